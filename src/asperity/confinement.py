@@ -11,8 +11,12 @@ from typing import Any
 
 _CREATE_RULESET, _ADD_RULE, _RESTRICT_SELF = 444, 445, 446
 """System calls of Landlock, the same on every kind of processor."""
-_ASK_FOR_VERSION, _PATH_BENEATH, _NO_NEW_PRIVILEGES = 1, 1, 38
-_EXECUTE, _READ_FILE, _READ_FOLDER = 1 << 0, 1 << 2, 1 << 3
+_ASK_FOR_VERSION = 1
+_PATH_BENEATH = 1
+_NO_NEW_PRIVILEGES = 38
+_EXECUTE = 1 << 0
+_READ_FILE = 1 << 2
+_READ_FOLDER = 1 << 3
 _FILE_RIGHTS = {1: 13, 2: 14, 3: 15, 5: 16}
 """How many rights over files a version of Landlock knows, from the version that brought the last of them."""
 _NETWORK_RIGHTS = {1: 0, 4: 2}

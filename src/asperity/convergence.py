@@ -102,7 +102,8 @@ def _named(setting: Setting, progress: Progress) -> Progress:
 
 def _compared(prepared: ReadyCase, result: DataTree, setting: Setting, progress: Progress) -> Comparison:
     """Take the first way of changing a setting that can be computed."""
-    base, limit = levels_of(result), setting.limit
+    base = levels_of(result)
+    limit = setting.limit
     for way in setting.ways:
         try:
             if setting.name == convergence.PATH_LENGTH:
@@ -232,7 +233,8 @@ def halves(tree: DataTree, step: float, highest: float) -> tuple[xarray.Dataset,
 def convergence_group(result: DataTree, found: Sequence[Comparison]) -> xarray.Dataset:
     """Lay out comparisons: changes by setting, law and band, the largest of the main law, and a sentence."""
     held = result[spectra.BAND.group].to_dataset()
-    band, laws = held[spectra.BAND.name].values, [str(law) for law in held[spectra.LAW.name].values]
+    band = held[spectra.BAND.name].values
+    laws = [str(law) for law in held[spectra.LAW.name].values]
     changes = [comparison.change for comparison in found]
     shown = compared_bands(held.drop_vars(spectra.START_SHARE.name, errors="ignore"))  # all start alike
     largest = [_largest(change.force.values[0], shown) for change in changes]

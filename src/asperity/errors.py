@@ -72,7 +72,10 @@ class InputError(AsperityError, ValueError):
     exit_code = 2
 
     def __init__(self, what: str, received: object, allowed: str, remedy: str = "") -> None:
-        self.what, self.received, self.allowed, self.remedy = what, received, allowed, remedy
+        self.what = what
+        self.received = received
+        self.allowed = allowed
+        self.remedy = remedy
         message = f"{_cut(what)}: received {_cut(received)}; allowed: {allowed}."
         super().__init__(printable(f"{message} {remedy}".strip()))
 
@@ -93,7 +96,8 @@ class CaseError(InputError):
     """
 
     def __init__(self, source: str, errors: list[str]) -> None:
-        self.source, self.errors = source, list(errors)
+        self.source = source
+        self.errors = list(errors)
         count = f"{len(errors)} error" + ("s" if len(errors) != 1 else "")
         listed = [f"  - {error}" for error in self.errors[:MOST_ERRORS]]
         if len(self.errors) > MOST_ERRORS:
@@ -166,9 +170,11 @@ class PhysicsWarning(UserWarning):
     @classmethod
     def warn(cls, message: str, grade: Grade = Grade.WARNING) -> None:
         """Warn, at the place outside this package from which it was called."""
-        frame, level = sys._getframe(1), 2
+        frame = sys._getframe(1)
+        level = 2
         while frame.f_back and frame.f_globals.get("__name__", "").startswith("asperity."):
-            frame, level = frame.f_back, level + 1
+            frame = frame.f_back
+            level = level + 1
         warnings.warn(cls(message, grade), stacklevel=level)
 
     @classmethod

@@ -107,7 +107,8 @@ def final_place(path: Path) -> Path:
 
 
 def _not_written(path: Path, error: OSError) -> AsperityError:
-    path, remedy = final_place(path), "another folder, or free space on this disk"
+    path = final_place(path)
+    remedy = "another folder, or free space on this disk"
     why = error.strerror or str(error)
     if error.errno == errno.ENAMETOOLONG:
         return InputError(str(path), "a name that is too long", "names that the disk can hold")

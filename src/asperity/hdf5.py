@@ -71,7 +71,8 @@ def _leads_nowhere(file: "h5py.File", name: str) -> bool:
 
 def is_hdf5(path: str | os.PathLike[str]) -> bool:
     """Whether a file is HDF5, by its signature, which other bytes may precede."""
-    place, size = 0, os.path.getsize(path)
+    place = 0
+    size = os.path.getsize(path)
     with open(path, "rb") as file:
         while place < size:
             file.seek(place)
@@ -91,7 +92,8 @@ def refuse_data_elsewhere(path: str | os.PathLike[str], source: str) -> None:
     import h5py
 
     with h5py.File(path, "r") as file:
-        groups, seen = [file.id], {h5py.h5o.get_info(file.id).addr}
+        groups = [file.id]
+        seen = {h5py.h5o.get_info(file.id).addr}
         while groups:
             group = groups.pop()
             for name in group:
@@ -139,7 +141,8 @@ def most_unpacked(path: str | os.PathLike[str]) -> int:
 
 def check_unpacked(path: str | os.PathLike[str], source: str, shape: Sequence[int], item_bytes: int) -> None:
     """Refuse an array that would take much more memory than its file is long, before any of it is read."""
-    size, most = size_unpacked(shape, item_bytes), most_unpacked(path)
+    size = size_unpacked(shape, item_bytes)
+    most = most_unpacked(path)
     if size > most:
         points = " x ".join(map(str, shape))
         received = f"{points} points in {os.path.getsize(path)} bytes, which unpack to {size}"

@@ -37,7 +37,8 @@ def counted(
     steps: Callable[[R], int] = lambda _: 1,
 ) -> Iterator[R]:
     """Hand results on as they come, and tell with each how many steps of the work are done."""
-    tell, done = progress or (lambda *_: None), 0
+    tell = progress or (lambda *_: None)
+    done = 0
     tell(done, total, message)
     for result in results:
         done += steps(result)
@@ -68,7 +69,8 @@ class Compilation:
         """Say that a function is being compiled."""
         with self._lock:
             self._begun[name] = time.monotonic()
-            announce, self._announce = self._announce, None
+            announce = self._announce
+            self._announce = None
             if announce is None and not self._said and _somebody_waits():
                 announce = _say_aloud
             self._said = self._said or announce is not None
@@ -101,7 +103,9 @@ class _Piece:
     """A piece of work: what is done of it, and how long the rest will take."""
 
     def __init__(self, message: str, done: int, total: int) -> None:
-        self.message, self.done, self.total = message, done, total
+        self.message = message
+        self.done = done
+        self.total = total
         self.begun = self._shown = time.monotonic()
         self._seen = deque([(self.begun, done)])
 
@@ -243,7 +247,8 @@ class _PlainProgress:
     """A line at the start of a piece of work, and one every few seconds."""
 
     def __init__(self, stream: TextIO | None) -> None:
-        self.stream, self.piece = stream, _Piece("", 0, 0)
+        self.stream = stream
+        self.piece = _Piece("", 0, 0)
 
     def __call__(self, done: int, total: int, message: str) -> None:
         if message != self.piece.message:

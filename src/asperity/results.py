@@ -109,7 +109,8 @@ def _opened_apart(path: Path, *, whole: bool = True) -> xarray.DataTree:
     if size > LARGEST_FILE:
         raise InputError(str(path), f"{size / 2**30:.0f} GiB", f"{_ALLOWED} of at most 16 GiB")
     with open(path, "rb") as file:
-        signature, intact = file.read(8), is_sealed(file)
+        signature = file.read(8)
+        intact = is_sealed(file)
     if signature != SIGNATURE:
         raise InputError(str(path), "a file that is not netCDF-4", _ALLOWED)
     if intact is False:
@@ -118,7 +119,8 @@ def _opened_apart(path: Path, *, whole: bool = True) -> xarray.DataTree:
     groups, arrays = sandboxed(
         groups_of_netcdf, path, [whole], source=str(path), kind="netCDF-4", packages=["h5py"]
     )
-    numbers, found = iter(arrays), {}
+    numbers = iter(arrays)
+    found = {}
     for name, attributes, variables in groups:
         held = {each: xarray.Variable(dims, next(numbers), told) for each, dims, told in variables}
         found[name] = xarray.Dataset(held, attrs=attributes)

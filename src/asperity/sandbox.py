@@ -56,7 +56,8 @@ def sandboxed(
     `InputError` is what the function raised; or says that it took more time or memory than it may, or that
     its process ended.
     """
-    file, size = str(path.absolute()), path.stat().st_size
+    file = str(path.absolute())
+    size = path.stat().st_size
     seconds = SECONDS + size / BYTES_PER_SECOND
     limits = [max(MEMORY, 4 * size), int(seconds) + 1]
     request = [function.__module__, function.__name__, file, arguments, list(packages), *limits]
@@ -79,7 +80,8 @@ def sandboxed(
 def _asked(request: bytes, patience: float) -> tuple[int, Answer | None, bytes]:
     """Exit code, answer and last words of a process that is given a request and so many seconds."""
     command = [sys.executable, "-c", _START, json.dumps(sys.path)]
-    pipe, environment = subprocess.PIPE, os.environ | _ONE_THREAD
+    pipe = subprocess.PIPE
+    environment = os.environ | _ONE_THREAD
     late, words = Event(), bytearray()
     with subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=pipe, env=environment) as process:
         assert process.stdin is not None

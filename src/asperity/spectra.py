@@ -43,18 +43,22 @@ def psd(signal: ArrayLike, spacing: float, *, segment: int | None = None) -> tup
     from scipy.fft import rfft  # not where only bands are looked up
 
     values = np.asarray(signal, dtype=np.float64)
-    long_enough, allowed = values.ndim > 0 and values.shape[-1] > 1, "at least 2 samples on the last axis"
+    long_enough = values.ndim > 0 and values.shape[-1] > 1
+    allowed = "at least 2 samples on the last axis"
     require(long_enough, "signal", f"shape {values.shape}", allowed)
-    finite, remedy = np.isfinite(values).all(), "Fill or cut missing samples."
+    finite = np.isfinite(values).all()
+    remedy = "Fill or cut missing samples."
     require(finite, "signal", "NaN or infinite values", "finite values", remedy)
     require(0.0 < spacing < np.inf, "spacing", spacing, "a positive finite step")
     samples = values.shape[-1]
     length = longest_segment(samples) if segment is None else int(segment)
     require(2 <= length <= samples, "segment", length, f"2 to {samples} samples", "Shorten the segment.")
     mean = values.mean(axis=-1, keepdims=True)[..., None, :]
-    window, advance = hann_window(length), length - length // 2
+    window = hann_window(length)
+    advance = length - length // 2
     segments = sliding_window_view(values, length, axis=-1)[..., ::advance, :]
-    count, together = segments.shape[-2], max(1, TOGETHER // max(1, values[..., 0].size * length))
+    count = segments.shape[-2]
+    together = max(1, TOGETHER // max(1, values[..., 0].size * length))
     power = np.zeros((*values.shape[:-1], length // 2 + 1))
     for first in range(0, count, together):
         windowed = segments[..., first : first + together, :] - mean
@@ -195,7 +199,8 @@ def chance_and_start(
     """
     numbers, shares = np.empty((2, len(centres)))
     for band, centre in enumerate(centres):
-        low, width = centre / HALF_BAND, centre * (HALF_BAND - 1.0 / HALF_BAND)
+        low = centre / HALF_BAND
+        width = centre * (HALF_BAND - 1.0 / HALF_BAND)
         force, pulse = _pulse(transfer, low, width)
         lines = pulse.size
         after = np.arange(lines) / width
@@ -261,7 +266,8 @@ def band_energies(frequency: ArrayLike, psd: ArrayLike, edges_low: ArrayLike, ed
     neighbouring bands add up to the energy of their union. Frequencies and edges are in Hz or cycles per
     metre, the former uniform and rising; parts of a band outside of them hold nothing.
     """
-    lines, density = np.asarray(frequency, dtype=np.float64), np.asarray(psd, dtype=np.float64)
+    lines = np.asarray(frequency, dtype=np.float64)
+    density = np.asarray(psd, dtype=np.float64)
     step = _frequency_step(lines, density)
     cell_edges = np.concatenate([lines - step / 2.0, [lines[-1] + step / 2.0]])
     start = np.zeros((*density.shape[:-1], 1))
@@ -272,7 +278,8 @@ def band_energies(frequency: ArrayLike, psd: ArrayLike, edges_low: ArrayLike, ed
 
 
 def _frequency_step(lines: Array, density: Array) -> float:
-    fit, received = density.shape[-1:] == lines.shape, f"shapes {lines.shape} and {density.shape}"
+    fit = density.shape[-1:] == lines.shape
+    received = f"shapes {lines.shape} and {density.shape}"
     require(fit and lines.size > 1, "frequency and psd", received, "(f,) and (..., f), f >= 2")
     step = (lines[-1] - lines[0]) / (lines.size - 1)
     uniform = step > 0.0 and np.allclose(np.diff(lines), step, rtol=1e-6, atol=0.0)
@@ -313,7 +320,8 @@ def _covered_centres(lines: Array, step: float) -> tuple[float, float]:
     widest_step = step / (HALF_BAND - 1.0 / HALF_BAND)
     above = max(widest_step, (lines[0] - step / 2.0) * HALF_BAND)
     below = (lines[-1] + step / 2.0) / HALF_BAND
-    first, last = np.ceil(10.0 * np.log10(above) - 1e-9), np.floor(10.0 * np.log10(below) + 1e-9)
+    first = np.ceil(10.0 * np.log10(above) - 1e-9)
+    last = np.floor(10.0 * np.log10(below) + 1e-9)
     return float(10.0 ** (first / 10.0)), float(10.0 ** (last / 10.0))
 
 

@@ -91,7 +91,8 @@ def _order_of_utf16(content: bytes) -> str:
 
     Latin letters and digits have their zeros at every second byte, and nowhere else.
     """
-    first, second = content[::2].count(0), content[1::2].count(0)
+    first = content[::2].count(0)
+    second = content[1::2].count(0)
     if len(content) % 2 or min(first, second) or max(first, second) < LATIN_SHARE * len(content) / 2:
         return ""
     return "le" if second else "be"

@@ -143,15 +143,20 @@ def scale_of(unit: str) -> Scale | None:
     words = (
         re.sub(r"\s*(\*\*|\^)\s*", "^", unit).replace("·", " ").replace("*", " ").replace("/", " / ").split()
     )
-    found, sign, power, pending = ONE, 1, 1, bool(words)
+    found = ONE
+    sign = 1
+    power = 1
+    pending = bool(words)
     last: Scale | None = None
     for word in words:
         if word in ("/", "per"):
             if pending or sign < 0:
                 return None
-            sign, pending = -1, True
+            sign = -1
+            pending = True
         elif word in _WORDS and power == 1:
-            power, pending = _WORDS[word], True
+            power = _WORDS[word]
+            pending = True
         elif word in _AFTER and last is not None:
             found = found.times(last, _AFTER[word] - 1)
             last = None
@@ -163,20 +168,24 @@ def scale_of(unit: str) -> Scale | None:
             exponent = int(match[2]) if match[2] else {"²": 2, "³": 3}.get(match[3], 1)
             last = ONE.times(named, sign * power * exponent)
             found = found.times(last, 1)
-            sign, power, pending = 1, 1, False
+            sign = 1
+            power = 1
+            pending = False
     return None if pending else found
 
 
 @cache
 def named_unit(name: str) -> Scale | None:
     """Scale of one unit by its name, with a prefix or in the plural; None where there is none."""
-    units, prefixes = _units(), _prefixes()
+    units = _units()
+    prefixes = _prefixes()
     plural = _PLURAL.fullmatch(name)
     for each in (name, *([plural[1]] if plural else [])):
         if each in units:
             return units[each]
         for length in range(len(each) - 1, 0, -1):
-            prefix, rest = each[:length], each[length:]
+            prefix = each[:length]
+            rest = each[length:]
             if prefix in prefixes and rest in units and rest not in "%°":
                 return units[rest]._replace(factor=units[rest].factor * prefixes[prefix])
     return None

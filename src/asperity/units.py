@@ -50,7 +50,8 @@ def factor(unit: str, dimension: str) -> float:
     misread = unit.lower().endswith(("mph", "kph")) and len(unit) > 3  # "kmph" is no thousand miles per hour
     remedy = "Write names, '/', '*' and powers, as in 'kg/m^3'."
     if len(unit) <= _LONGEST and not misread and _UNIT.fullmatch(unit):
-        found, wanted = scale_of(unit), scale_of(dimension) or ONE
+        found = scale_of(unit)
+        wanted = scale_of(dimension) or ONE
         if found is not None and found.converts(wanted):
             return (found.of_turns() if dimension == "Hz" else found).value
         remedy = "Check its spelling."

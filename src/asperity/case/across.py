@@ -114,7 +114,8 @@ def complete(line: Profile, key: str) -> Profile:
 def _away_from_rest(y: Array, z: Array) -> Array:
     """Heights (n,), m, from the line that half of a section may leave (repeated medians, Siegel 1982)."""
     some = np.unique(np.linspace(0, len(y) - 1, min(len(y), COMPARED)).astype(int))
-    across, up = np.subtract.outer(y[some], y[some]), np.subtract.outer(z[some], z[some])
+    across = np.subtract.outer(y[some], y[some])
+    up = np.subtract.outer(z[some], z[some])
     np.fill_diagonal(across, np.nan)
     slope = float(np.median(np.nanmedian(up / across, axis=1)))
     return np.asarray(z - slope * y - np.median(z[some] - slope * y[some]))
@@ -149,14 +150,16 @@ def _is_head_down(y: Array, z: Array) -> bool:
 def _refuse_strange_flange(key: str, section: Profile, y: Array, side: int) -> None:
     """Refuse a tread whose flange is on the field side, too high, or away from where flanges are."""
     z = section.heights
-    top, height = float(y[np.argmax(z)]), float(_away_from_rest(y, z).max())
+    top = float(y[np.argmax(z)])
+    height = float(_away_from_rest(y, z).max())
     if section.start is not None and y[0] < 0.0 < y[-1]:
         height = float(z.max() - np.interp(0.0, y, z))
     received = f"a flange at {rounded(1e3 * top)} mm, on the field side"
     allowed = "places positive to the field side: a flange is on the side of negative ones"
     remedy = "Change the sign of its places, and of those of the rail if both count the same way."
     require(side <= 0, key, received, allowed, remedy)
-    received, most = f"a flange {rounded(1e3 * height)} mm high", rounded(1e3 * HIGHEST_FLANGE)
+    received = f"a flange {rounded(1e3 * height)} mm high"
+    most = rounded(1e3 * HIGHEST_FLANGE)
     remedy = "Are its heights diameters? Halve them. Else check their unit."
     require(height <= HIGHEST_FLANGE, key, received, f"flanges of up to {most} mm", remedy)
     low, high = FLANGE_PLACES
@@ -189,8 +192,10 @@ def _doubts_of_tread(key: str, y: Array, z: Array) -> Iterator[str]:
 
 def _doubts_of_head(key: str, y: Array, z: Array) -> Iterator[str]:
     """Say where a rail's head that falls to both sides has not its middle where its places begin."""
-    top, low = int(np.argmax(z)), float(z.max()) - FALLEN
-    left, right = np.flatnonzero(z[:top] < low), np.flatnonzero(z[top:] < low)
+    top = int(np.argmax(z))
+    low = float(z.max()) - FALLEN
+    left = np.flatnonzero(z[:top] < low)
+    right = np.flatnonzero(z[top:] < low)
     if left.size and right.size:
         middle = 0.5 * float(y[left[-1]] + y[top + right[0]])
         if abs(middle) > OFF:
@@ -260,8 +265,10 @@ class Meeting:
     def of(cls, tread: Lying, head: Lying, keys: str, clear: float) -> Meeting:
         """Find the lowest gap, at least `clear` m inside of what is known; messages tell of `keys`."""
         ends = [each.section.t[[0, -1]] for each in (tread, head)]
-        low, high = max(each[0] for each in ends), min(each[1] for each in ends)
-        places, anywhere = np.linspace(low, max(low, high), POINTS), cls(tread, head, 0.0)
+        low = max(each[0] for each in ends)
+        high = min(each[1] for each in ends)
+        places = np.linspace(low, max(low, high), POINTS)
+        anywhere = cls(tread, head, 0.0)
         n = int(np.argmin(anywhere._gap(places)))
         around = places[max(n - 1, 0)], places[min(n + 1, POINTS - 1)]
         found = scipy.optimize.minimize_scalar(
@@ -322,7 +329,8 @@ def _lying(
     for wheel and rail come into the material of one of them: they are turned where its shape shows that, the
     flange of a tread or the corners of a head.
     """
-    turned, way = False, 0
+    turned = False
+    way = 0
     doubts: Iterable[str] = ()
     if measured is None:
         y, z = _circle(radius)
@@ -356,7 +364,8 @@ def meeting_of(case: Case, clear: float | None = None) -> Meeting:
     `clear` m, by default half of the window, inside of what is known of them.
     """
     body, over, (tread, head) = case.rolling, case.rolled_over, section_keys(case)
-    inclination, shift = None, 0.0
+    inclination = None
+    shift = 0.0
     if "sideways" in case.inner and case.sideways.rail_inclination is not None:
         inclination = math.atan(INCLINATIONS[case.sideways.rail_inclination])
         shift = case.sideways.wheel_shift

@@ -186,7 +186,8 @@ def commented(
 
 
 def _commented_line(entry: CaseKey, written_out: Mapping[str, str]) -> str:
-    key, value = entry.key, written_out.get(entry.dotted)
+    key = entry.key
+    value = written_out.get(entry.dotted)
     default = f"default: {key.otherwise}" if key.otherwise else "no default"
     if key.default is not None:
         usual = toml_value(key.default)
@@ -398,7 +399,8 @@ class AnyCase(Section):
             for name, own in section.keys.items():
                 if not section.is_active(name):
                     continue
-                value, usual = getattr(section, name), section.default_of(name)
+                value = getattr(section, name)
+                usual = section.default_of(name)
                 default = own.otherwise if usual is None else in_words(usual, own)
                 same = value is None or content(value) == content(usual)
                 if same and name not in self.SHOWN.get(title, (name,)):

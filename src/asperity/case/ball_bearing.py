@@ -45,17 +45,20 @@ MOST_STEPS = 10**8
 """Time steps of all balls: 4 GB while they roll."""
 FEWEST = 5.0
 """Periods of the slowest tone in a record, at least."""
-_STIFFNESS, _STIFF = Quantity("N/m", at_least=0), "1 N/m to 1 TN/m: softer holds nothing, harder is rigid"
+_STIFFNESS = Quantity("N/m", at_least=0)
+_STIFF = "1 N/m to 1 TN/m: softer holds nothing, harder is rigid"
 _RATE, _MASS = Quantity("Hz", above=0), Quantity("kg", above=0)
 _SPEED = Quantity("Hz", "1/min", above=0)
 _DAMPED = "1e-9 N s/m to 1e9 N s/m: less damps nothing, more is rigid"
 _BAND, _ANGLES = ListOf(Quantity("Hz", at_least=0), least=2), ListOf(Quantity("rad"), least=1)
 _RATIO, _SLIPS = Number(at_least=0, at_most=0.99), ListOf(Number(at_least=0, at_most=0.2), least=2)
 _COUNT = Number(at_least=1, whole=True)
-_LENGTH, _RINGS = Quantity("m", above=0), "0.1 mm to 1 m: rings lie between"
+_LENGTH = Quantity("m", above=0)
+_RINGS = "0.1 mm to 1 m: rings lie between"
 DIMENSIONS = keys_of(BallBearing, otherwise="that of the named bearing")
 NEEDED = ("balls", "ball_diameter", "pitch_diameter")
-LOAD, LOADS = Quantity("N", at_least=0), "0 N to 100 MN: bearings carry less"
+LOAD = Quantity("N", at_least=0)
+LOADS = "0 N to 100 MN: bearings carry less"
 SPEEDS = "0 Hz to 10 kHz: bearings turn slower"
 
 
@@ -379,7 +382,8 @@ class BearingUnderLoad(AnyCase):
     @property
     def contacts(self) -> tuple[tuple[Hertz, float], tuple[Hertz, float]]:
         """Smooth contacts of a ball with the inner and the outer ring, and their largest static loads, N."""
-        of, found = self.bearing.bearing, self.static
+        of = self.bearing.bearing
+        found = self.static
         loads = float(found.inner_load.max()), float(found.outer_load.max())
         return (of.inner_contact, loads[0]), (of.outer_contact, loads[1])
 
@@ -393,7 +397,9 @@ class BearingUnderLoad(AnyCase):
         """How the inner and the outer ring bend, where they do: by modes, or the outer one by its lobes."""
         from asperity.structures.ring import Ring
 
-        angle, outer, of = self.static.contact_angle, self.housing, self.bearing.bearing
+        angle = self.static.contact_angle
+        outer = self.housing
+        of = self.bearing.bearing
         if outer.lobes is None:
             return self.shaft.bending(angle), outer.bending(angle)
         radius = of.raceway_radii[1] + 0.5 * outer.thickness
@@ -478,7 +484,8 @@ class BearingUnderLoad(AnyCase):
             if pair is not None and (len(pair) != 2 or pair[0] > pair[1]):
                 yield InputError(name, ", ".join(f"{each:g}" for each in pair), "two values that do not fall")
         if self.envelope_band is not None and self.envelope_band[-1] > 0.5 * self.sampling_rate:
-            received, allowed = f"up to {self.envelope_band[-1]:g} Hz", f"{0.5 * self.sampling_rate:g} Hz"
+            received = f"up to {self.envelope_band[-1]:g} Hz"
+            allowed = f"{0.5 * self.sampling_rate:g} Hz"
             yield InputError("envelope_band", received, f"at most half the sampling_rate, {allowed}")
         tones = [self.kinematics.tone(part) for part in PARTS]
         if self.duration * min(tones) < FEWEST:

@@ -83,7 +83,8 @@ class BeamKeys(RolledOver):
 
     def liveliest(self, highest_frequency: float) -> Liveliness:
         """Of bending modes up to a wavenumber k, some k L/π, none moves by more than twice 1/√mass."""
-        highest, material = self.highest_mode(highest_frequency), self.material
+        highest = self.highest_mode(highest_frequency)
+        material = self.material
         stiffness = material.youngs_modulus * self.height**2 / (12.0 * material.density)
         waves = math.sqrt(2.0 * math.pi * highest / math.sqrt(stiffness)) * self.length / math.pi
         mass = material.density * self.length * self.width * self.height

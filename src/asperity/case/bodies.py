@@ -207,11 +207,13 @@ class WheelOnRail(OverTrack, defaults=DEFAULTS):
         """A load that asks for its unit, and a path that is long enough."""
         weight = GRAVITY * self.wheel.contact_mass
         if self.wheel.contact_load < weight * (1.0 - 1e-9):
-            received, mass = written(self.wheel.contact_load, "N", "kN"), self.wheel.contact_mass
+            received = written(self.wheel.contact_load, "N", "kN")
+            mass = self.wheel.contact_mass
             allowed = f"at least {written(weight, 'N', 'kN')}, the weight of {mass:g} kg on the contact"
             remedy = "Loads include the wheel's own weight: give the load in kN, or a lighter wheel."
             yield InputError("wheel.load", received, allowed, remedy)
-        length, contact = self.speed * self.rolled_time, self.contact
+        length = self.speed * self.rolled_time
+        contact = self.contact
         least = max(contact.window, (contact.filter_taps or 0) * contact.spacing)
         if length < least:
             received = f"{self.rolled_time:g} s, in which {length * 1e3:.4g} mm are rolled"

@@ -26,7 +26,8 @@ COUNT = Number(at_least=1, at_most=MOST_CONTACTS, whole=True)
 MASS, FORCE = Quantity("kg", above=0), Quantity("N", above=0)
 STIFFNESS, DAMPING = Quantity("N/m", above=0), Quantity("N s/m", at_least=0)
 INERTIA = Quantity("kg m^2", above=0)
-_BODIES, _FLAT = "bodies that roll lie between", {"goes_with": "flat_depth or flat_length"}
+_BODIES = "bodies that roll lie between"
+_FLAT = {"goes_with": "flat_depth or flat_length"}
 PROFILE = File(held=(Profile,))
 OF_SEVERAL = (
     "type", "positions", "groove_radius", "raceway_radius", "raceway", "masses", "springs", "dampers",
@@ -285,7 +286,8 @@ class Rolling(Ringing, FlatOnTread):
     @property
     def degrees(self) -> dict[str, float]:
         """Degrees of freedom of all bodies, each from its contacts upwards: 1, or the lever of a pitch, m."""
-        lever, above = 0.5 * self.places[-1], len(self.masses or ())
+        lever = 0.5 * self.places[-1]
+        above = len(self.masses or ())
         one = {"mass on the contact": 1.0} | {f"mass {n} above": 1.0 for n in range(1, above + 1)}
         if self.type == "bogie":
             one = {"rear wheel": 1.0, "front wheel": 1.0, "frame": 1.0, "frame, pitch at its end": lever}
@@ -332,9 +334,12 @@ class Rolling(Ringing, FlatOnTread):
         return body.with_modes(*resonances) if len(resonances[0]) else body
 
     def _rigid(self, upper_stiffness: float) -> Body:
-        mass, places, above = self.contact_mass, self.places, list(self.masses or ())
+        mass = self.contact_mass
+        places = self.places
+        above = list(self.masses or ())
         extra = self.contact_load * len(places) - GRAVITY * (mass * len(places) + sum(above))
-        springs, dampers = list(self.springs or ()), list(self.dampers or [0.0] * len(above))
+        springs = list(self.springs or ())
+        dampers = list(self.dampers or [0.0] * len(above))
         if self.type == "chain":
             return chain([mass, *above], springs, dampers, load=extra)
         if self.type == "mass":
@@ -354,14 +359,16 @@ class Rolling(Ringing, FlatOnTread):
             yield InputError("positions", count_of(len(self.offsets), "contact"), f"at most {MOST_CONTACTS}")
         yield from self._problems_of_type()
         if max(self.flat_contacts, default=0) > len(self.offsets):
-            received, allowed = f"{max(self.flat_contacts)}", f"numbers up to {len(self.offsets)}"
+            received = f"{max(self.flat_contacts)}"
+            allowed = f"numbers up to {len(self.offsets)}"
             yield InputError("flat_contacts", received, allowed)
         ordered = np.sort(self.offsets)
         if len(ordered) > 1 and np.diff(ordered).min() <= 1e-9:
             received = "two contacts in the same place"
             yield InputError("positions", received, "contacts that are apart", "Move one of them.")
         if self.receptance is not None and self.type != "mass":
-            received, allowed = f"beside type {self.type}", "that of a mass, alone"
+            received = f"beside type {self.type}"
+            allowed = "that of a mass, alone"
             yield InputError("receptance", received, allowed, "Give modes, or the receptance.")
         if self.contact_mass < (drawn := self.drawn_mass):
             allowed = f"at least {drawn:.4g} kg, that of the drawn wheel, to which the axle adds"
@@ -375,7 +382,8 @@ class Rolling(Ringing, FlatOnTread):
             yield InputError("masses", f"{masses} of a {self.type}", allowed)
         if self.type == "chain" and not masses:
             yield InputError("masses", "none of a chain", "at least one mass above", 'As ["2500 kg"].')
-        springs, dampers = len(self.springs or ()), len(self.dampers or ())
+        springs = len(self.springs or ())
+        dampers = len(self.dampers or ())
         if springs != masses and not (self.type == "carriage" and springs == 0):
             yield InputError("springs", f"{springs} under {masses} masses", "one spring under each mass")
         if dampers not in (0, masses):

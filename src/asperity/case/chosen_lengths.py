@@ -54,7 +54,8 @@ def chosen_lengths(case: "Case") -> dict[str, dict[str, float]]:
     shortest = surface.get("shortest", 0.25 * longest)
     spacing = max(preferred_length(min(fine, shortest / CELLS_PER_WAVE, case.coarsest_spacing)), FINEST)
     spacing = contact.get("spacing", spacing)
-    roughness, rms = 0.0, case.surface.rms
+    roughness = 0.0
+    rms = case.surface.rms
     if rms is not None:
         usual = max(2.0 * spacing, min(CELLS_PER_WAVE * max(spacing, fine), 0.25 * longest))
         shortest = surface.get("shortest", usual)

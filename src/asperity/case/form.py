@@ -154,7 +154,8 @@ class Section:
         self, given: Mapping[str, Any], origin: Origin, whole: "type[Section]", title: str = ""
     ) -> list[InputError]:
         """Read all keys as a section of a whole, or the whole itself; return what is wrong with them."""
-        errors, held = list[InputError](), self.__dict__
+        errors = list[InputError]()
+        held = self.__dict__
         try:
             given = self.prepared(numbered(given))
         except Problems as problems:
@@ -189,7 +190,8 @@ class Section:
         """What is wrong with keys that are right one by one; what follows from others is filled in before."""
         implausible = list[InputError]()
         for name in [name for name in self.keys if name in self.given_names and self.keys[name].within]:
-            key, value = self.keys[name], getattr(self, name)
+            key = self.keys[name]
+            value = getattr(self, name)
             for each in value if isinstance(value, tuple) else (value,):
                 implausible += outside(name, each, key.one, key.within)
         if implausible:

@@ -137,7 +137,8 @@ def _in_some_unit(
 
     Of these the first must be there, and all others may.
     """
-    errors, tried = [], list(units)
+    errors = []
+    tried = list(units)
     for unit in tried:
         second, *others = (Column(name, unit, PRESSURE if unit in SOUND else "") for name in names)
         try:

@@ -293,7 +293,8 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
         """
         if self.pad_table is None or self.pad_preload is not None or len(preloads_of(self._pad_rows)) < 2:
             return self
-        carried, told = 0.5 * load, self.overrides
+        carried = 0.5 * load
+        told = self.overrides
         for _ in range(PRELOAD_STEPS):
             pad = stiffness_at_preload(self._pad_rows, carried)
             track = Track.named(self.name, **(told | {"pad_table": pad}))

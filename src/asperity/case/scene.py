@@ -372,7 +372,8 @@ class Case(AnyCase):
 
     def _problems_of_texture(self) -> Iterator[InputError]:
         """Some texture, and waves that the grid resolves."""
-        surface, spacing = self.surface, self.contact.spacing
+        surface = self.surface
+        spacing = self.contact.spacing
         rolling = self.rolling.has_own_texture or self.rolling.flat is not None
         if not (surface.has_texture or rolling or surface.smooth):
             allowed = (
@@ -395,9 +396,9 @@ class Case(AnyCase):
     def _problems_of_sampling(self) -> Iterator[InputError]:
         """Grid and time step resolve the highest frequency; the window is no wider than the bodies."""
         yield from self.contact.problems_of_window()
-        highest, coarsest, spacing = (
-            self.numerics.highest_frequency, self.coarsest_spacing, self.contact.spacing,
-        )  # fmt: skip
+        highest = self.numerics.highest_frequency
+        coarsest = self.coarsest_spacing
+        spacing = self.contact.spacing  # fmt: skip
         if spacing > coarsest:
             received = f"{written(spacing, 'm', 'um')} at {self.speed:g} m/s and {highest:g} Hz"
             allowed = f"at most speed / ({SAMPLING} highest_frequency) = {rounded(coarsest * 1e6, 4)} um"
@@ -416,11 +417,13 @@ class Case(AnyCase):
     def _problems_of_room(self) -> Iterator[InputError]:
         """The contacts stay on what they roll over for as long as they are rolled, in steps that are few."""
         start, rolled, (first, last) = self.record_start, self.rolled_time, self.rolled_range
-        over, time = self.over_name, self.settled_time + rolled
+        over = self.over_name
+        time = self.settled_time + rolled
         begin, end = self.room or (-math.inf, math.inf)
         foremost = ", where the foremost contact is at its end" if len(self.contacts_behind) > 1 else ""
         if end <= begin:
-            received, length = f"contacts over {self.contacts_behind[-1]:g} m", end - begin
+            received = f"contacts over {self.contacts_behind[-1]:g} m"
+            length = end - begin
             allowed = f"less than the length of the {over}, {length + max(self.rolling.offsets):g} m"
             yield InputError(f"{self.ROLLING}.positions", received, allowed)
         elif start >= end:
@@ -462,7 +465,8 @@ class Case(AnyCase):
             title, _, name = dotted.partition(".")
             for given in sorted(getattr(self, title).given() if title in self.inner else ()):
                 if name in ("", given):
-                    what, allowed = f"{title}.{given}", f"what a {self.over_name} has"
+                    what = f"{title}.{given}"
+                    allowed = f"what a {self.over_name} has"
                     yield InputError(what, "a key of a track", allowed, "Remove it.")
 
     def _problem_of_place(self) -> Iterator[InputError]:

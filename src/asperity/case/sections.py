@@ -135,7 +135,8 @@ class ContactKeys(form.Section):
             allowed = f"8 to {MOST_CELLS} cells of the spacing"
             yield InputError("contact.window", received, allowed, "Change window or spacing.")
         if self.sample_length is not None and self.sample_length < 2 * self.window:
-            received, allowed = written(self.sample_length, "m", "um"), f"{2e6 * self.window:g} um"
+            received = written(self.sample_length, "m", "um")
+            allowed = f"{2e6 * self.window:g} um"
             yield InputError("contact.sample_length", received, f"at least two windows, {allowed}")
 
 
@@ -328,7 +329,8 @@ class NoiseKeys(form.Section):
         """All axles of the train, of contacts so far behind the first, m, passing at a speed, m/s."""
         from asperity.radiation.pass_by import Passage
 
-        axles, length = self.axles_behind(contacts), self.vehicle_length
+        axles = self.axles_behind(contacts)
+        length = self.vehicle_length
         if length is None:
             return Passage(axles, speed)
         train = tuple(number * length + axle for number in range(self.vehicles) for axle in axles)
@@ -390,7 +392,8 @@ class NoiseKeys(form.Section):
         if told and len(contacts) > 1:
             allowed = "nothing where several contacts roll, which are the axles"
             yield InputError(f"noise.{told[0]}", "a train", allowed, "Remove it.")
-        length, last = self.vehicle_length, self.axles_behind(contacts)[-1]
+        length = self.vehicle_length
+        last = self.axles_behind(contacts)[-1]
         if length is not None and length <= last:
             allowed = f"more than that over its axles, {written(last, 'm', 'm')}"
             yield InputError("noise.vehicle_length", written(length, "m", "m"), allowed)

@@ -54,7 +54,8 @@ class SidewaysKeys(Section, parameters=keys_of(LateralTrack, otherwise="of a UIC
 
 
 _ANY = "angle_of_attack or longitudinal or lateral or spin"
-_CREEPAGE, _NONE = Number(at_least=-0.1, at_most=0.1), "none"
+_CREEPAGE = Number(at_least=-0.1, at_most=0.1)
+_NONE = "none"
 
 
 class CreepKeys(Section):

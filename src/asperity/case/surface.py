@@ -310,7 +310,8 @@ def surfaces_from(
     """Make height maps or a profile of the array that a key of a section holds, with its spacing and unit."""
     if not isinstance(heights := given.get(name), np.ndarray):
         return given
-    keys, problems = dict(given), []
+    keys = dict(given)
+    problems = []
     if heights.ndim not in dimensions:
         shapes = " or ".join(f"{n} dimensions" if n > 1 else "one dimension" for n in dimensions)
         problems.append(InputError(name, f"an array of shape {heights.shape}", f"an array of {shapes}"))
@@ -380,11 +381,13 @@ class Recipe(Section):
 
     def stepped(self, surface: S) -> S:
         """Cut a piece, remove a form, filter, and turn into the direction of rolling."""
-        is_map, done = isinstance(surface, HeightMap), cast(Any, surface)
+        is_map = isinstance(surface, HeightMap)
+        done = cast(Any, surface)
         if self.crop is not None:
             of_map = "four of a map: x, y and both sides"
             of_line = "two of a line: where the piece begins, and its length"
-            right, count = len(self.crop) == (4 if is_map else 2), count_of(len(self.crop), "length")
+            right = len(self.crop) == (4 if is_map else 2)
+            count = count_of(len(self.crop), "length")
             require(right, spell("crop"), count, of_map if is_map else of_line)
             done = done.crop(self.crop[:2], self.crop[2:]) if is_map else done.crop(*self.crop)
         if self.form is not None:

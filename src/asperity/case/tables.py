@@ -109,7 +109,8 @@ def read_levels(table: TableSource) -> tuple[Array, Array]:
     levels, lines beside each other, that is their energy mean.
     """
     rows = read_table(table, LEVELS, repeated=True)
-    wavelength, levels = rows[:, 0], rows[:, 1:]
+    wavelength = rows[:, 0]
+    levels = rows[:, 1:]
     level = levels[:, 0] if levels.shape[1] == 1 else energy_sum(levels) - 10.0 * np.log10(levels.shape[1])
     order = np.argsort(-wavelength)
     wavelength, level = wavelength[order], level[order]

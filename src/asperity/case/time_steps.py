@@ -37,7 +37,9 @@ def on_grid(wanted: float, per_cell: float) -> float:
 
 def resolving(case: "Case", usual: float) -> float:
     """A time step as usual, s, or the longest on the grid with which no run doubts what it resolves."""
-    longest, step, per_cell = longest_step(case, usual), usual, case.contact.spacing / case.speed
+    longest = longest_step(case, usual)
+    step = usual
+    per_cell = case.contact.spacing / case.speed
     for _ in range(ROUNDS):
         if step <= longest:
             return step

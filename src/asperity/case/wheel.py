@@ -168,7 +168,8 @@ class Ringing(form.Section, parameters=_DIMENSIONS):
         drawn = outline[circle, 0]
         if abs(drawn / self.radius - 1.0) > CLOSE_RADIUS:
             allowed = f"within {CLOSE_RADIUS:.0%} of the rolling radius, {self.radius * 1e3:.4g} mm"
-            ratio, remedy = drawn / self.radius, ""
+            ratio = drawn / self.radius
+            remedy = ""
             if abs(ratio / 2.0 - 1.0) <= CLOSE_RADIUS:
                 remedy = "Are the radii of the section diameters? Then halve them."
             elif abs(2.0 * ratio - 1.0) <= CLOSE_RADIUS:

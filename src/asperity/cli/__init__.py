@@ -264,7 +264,8 @@ def check(case: Path, directory: Path | None, keys: bool, overwrite: bool) -> Do
     from asperity.case.cases import read_case
     from asperity.cli.running import refuse_full, refuse_other, show_plan
 
-    loaded, target = read_case(case), directory or Path("runs") / case.stem
+    loaded = read_case(case)
+    target = directory or Path("runs") / case.stem
     refuse_full(loaded, target)
     if not overwrite:
         refuse_other(loaded, target)

@@ -33,7 +33,8 @@ def show_bearing(
 ) -> dict[str, Any]:
     """Print what a bearing does under its load, or what its signals say, and draw it; return the numbers."""
     keys = read_bearing(source, options)
-    of, name = keys.bearing, keys.name or source
+    of = keys.bearing
+    name = keys.name or source
     say(
         f"{name}: {of.balls} balls of {of.ball_diameter * 1e3:.4g} mm, pitch diameter "
         f"{of.pitch_diameter * 1e3:.4g} mm, grooves of {of.inner_conformity:g} D (inner) and "

@@ -150,15 +150,19 @@ def _failed(error: BaseException, command: str, *, debug: bool = False) -> int:
     if isinstance(error, click.ClickException):
         usage = io.StringIO()
         error.show(usage)
-        told, message, code = usage.getvalue(), error.format_message(), error.exit_code
+        told = usage.getvalue()
+        message = error.format_message()
+        code = error.exit_code
     elif isinstance(error, KeyboardInterrupt | click.Abort) or was_interrupted():
         told = message = _INTERRUPTED  # even where an import has made another error of it
         code = INTERRUPTED
     else:
-        message, code = f"the program failed with {type(error).__name__}: {error}", FAILED
+        message = f"the program failed with {type(error).__name__}: {error}"
+        code = FAILED
         message = f"{printable(message)}. Try: asperity --debug …, which shows where."
         if isinstance(error, errors.AsperityError):
-            message, code = str(error), error.exit_code
+            message = str(error)
+            code = error.exit_code
         elif isinstance(error, MemoryError):
             message = errors.TOO_MUCH_MEMORY
         told = f"Error: {message}"

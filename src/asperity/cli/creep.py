@@ -89,7 +89,8 @@ def _told_curve(curve: CreepCurve, load: float, source: str) -> Told:
     """Forces over what friction carries; of rough samples their mean."""
     limit, name, (slope, *rough) = curve.limit, NAMES[curve.direction], curve.slopes
     title = f"{source}: {engineering(load, 'N')}, friction {rounded(limit / load, 4)}, {curve.direction}"
-    smooth, samples = curve.force[0] / limit, curve.force[1:] / limit
+    smooth = curve.force[0] / limit
+    samples = curve.force[1:] / limit
     drawn: dict[str, tuple[Array, Array | None]] = {"smooth": (smooth, None)}
     words = f"At the smallest {name} the smooth contact has {slope:.4f} of Kalker's linear force"
     if rough:
@@ -120,7 +121,8 @@ def _from_zero(values: Array) -> Array:
 
 def _told_states(states: TractionStates, source: str) -> Told:
     """Rough over smooth under the same load in words, the functions themselves as columns."""
-    load, change = states.load.mean(axis=0), states.change
+    load = states.load.mean(axis=0)
+    change = states.change
     title = f"{source}: rough contact over smooth under the same load, {count_of(len(states.load), 'sample')}"
     told = {
         name: [f"{m:.3f} ± {rounded(s, 2)}" if m == m else "short sample" for m, s in zip(*each, strict=True)]

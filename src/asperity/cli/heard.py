@@ -137,7 +137,8 @@ def _one_by_one(
 
 def _length(signals: Sequence[Recorded]) -> str:
     """How long signals are."""
-    size, rate = sum(each.values.size for each in signals), signals[0].rate
+    size = sum(each.values.size for each in signals)
+    rate = signals[0].rate
     length = f"{count_of(size, 'sample')}, {rounded(size / rate, 4)} s at {rounded(rate, 6)} Hz"
     tellers = {each.rate_by for each in signals} - {""}
     return f"{length}, as {tellers.pop()}" if len(tellers) == 1 else length

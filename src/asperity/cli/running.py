@@ -77,7 +77,8 @@ def run_case(
     InputError
         If the case cannot be computed, or its results not go into `directory`.
     """
-    tree, more = None, [name for name, asked in ((CONVERGENCE, converge), (EFFECTS, what_helps)) if asked]
+    tree = None
+    more = [name for name, asked in ((CONVERGENCE, converge), (EFFECTS, what_helps)) if asked]
     if what_helps:
         from asperity.studies.effects import what_helps as plan
 
@@ -124,7 +125,9 @@ def _run_alone(case: AnyCase, directory: Path, source: str, *, report: bool, mor
     """Compute a case, and more groups, and write its results, while no other run does into this folder."""
     from asperity.running import run
 
-    began, compiled, name = time.monotonic(), COMPILATION.seconds, name_of_run(case)
+    began = time.monotonic()
+    compiled = COMPILATION.seconds
+    name = name_of_run(case)
     prepared = prepared_case(case, source)
     with progress_bar() as progress:
         announce_scan(prepared)
@@ -145,7 +148,8 @@ def _run_alone(case: AnyCase, directory: Path, source: str, *, report: bool, mor
             if EFFECTS in more:
                 tree = with_effects(case, tree, progress)
         _write(tree, directory, report=report)
-    spent, compiling = time.monotonic() - began, COMPILATION.seconds - compiled
+    spent = time.monotonic() - began
+    compiling = COMPILATION.seconds - compiled
     told = f", of which {duration(compiling)} compiled {COMPILATION.functions} functions" if compiling else ""
     detail(f"Time:    {duration(spent)}{told}")
     store = Store()
@@ -182,7 +186,8 @@ def _write(tree: DataTree, directory: Path, *, report: bool) -> None:
 
 def described_scan(scan: ScanSize) -> str:
     """Describe the scan of a path in a sentence: its size, disk use, and what an interruption costs."""
-    root, size = Store().root, f"{scan.bytes / 2**20:.1f} MiB"
+    root = Store().root
+    size = f"{scan.bytes / 2**20:.1f} MiB"
     return (
         f"{scan.positions} positions × {scan.states} approaches, "
         f"about {scan.solutions} solutions, more where the motion goes farther, {size} in {root}; "
@@ -221,7 +226,8 @@ def law_summaries(tree: DataTree) -> list[dict[str, Any]]:
     from asperity.scenes import schema
     from asperity.studies.member import kept
 
-    found, velocity = kept(tree), bearing.BAND_VELOCITY.name
+    found = kept(tree)
+    velocity = bearing.BAND_VELOCITY.name
     names = [*rolling.FORCES, *(entry.name for entry in (*rolling.LOSSES, *schema.TOTALS))]
     told = [velocity] if velocity in found else [name for name in names if name in found]
     parts = schema.RADIATOR.name
@@ -243,7 +249,9 @@ def earlier_result(case: AnyCase, directory: Path, *, report: bool, more: Sequen
     """The result of this case that a folder holds, with all that is asked for, more groups too; else None."""
     from asperity.results import read_result
 
-    file, page, name = directory / RESULT, directory / PAGE, name_of_run(case)
+    file = directory / RESULT
+    page = directory / PAGE
+    name = name_of_run(case)
     if not name or no_file(file):
         return None
     if report and (no_file(page) or page.stat().st_mtime_ns < file.stat().st_mtime_ns):
@@ -272,7 +280,8 @@ def name_of_run(case: AnyCase) -> str:
 
 def program() -> str:
     """SHA-256 over the sources of the program: its version alone says nothing while it is worked on."""
-    digest, folder = hashlib.sha256(asperity.__version__.encode()), Path(asperity.__file__).parent
+    digest = hashlib.sha256(asperity.__version__.encode())
+    folder = Path(asperity.__file__).parent
     for path in sorted(folder.rglob("*")):
         if path.is_file() and "__pycache__" not in path.parts and path.suffix not in (".pyc", ".part"):
             digest.update(str(path.relative_to(folder)).encode() + b"\0" + path.read_bytes())
@@ -316,7 +325,8 @@ def show_plan(case: AnyCase, source: str, *, every_key: bool = False) -> dict[st
 
     Returns what a program wants to know of it. An `InputError` says that the case cannot be computed.
     """
-    store, name = Store(), name_of_run(case)
+    store = Store()
+    name = name_of_run(case)
     key = content_key("plan", name, processors(), os.environ.get(THREADS, ""))
     kept = store.get(key) if name else None  # of an earlier check, if all that it depends on is the same
     found = planned(prepared_case(case, source)) if kept is None else json.loads(kept["plan"].tobytes())

@@ -34,7 +34,11 @@ from asperity.studies.words import MISSING, table_in_words
 from asperity.terminal import line_width, remark, say, say_files, say_table
 from asperity.text_files import write_csv
 
-RESULTS, TABLE, MEANS, BAND, PAGE = "study.nc", "study.csv", "study_mean.csv", "ensemble.csv", "study.html"
+RESULTS = "study.nc"
+TABLE = "study.csv"
+MEANS = "study_mean.csv"
+BAND = "ensemble.csv"
+PAGE = "study.html"
 EFFECTS = "effects.csv"
 OFFERED = {
     "effects": "effects (CSV)",
@@ -210,7 +214,8 @@ def _write(
 def _summary(table: xarray.Dataset, mean: xarray.Dataset) -> str:
     """Say what was swept, how much of it was computed, and between what and what its first level lies."""
     swept = " × ".join(f"{table.sizes[name]} values of {name}" for name in json.loads(table.attrs["sweep"]))
-    done, count = int(table["completed"].sum()), table["completed"].size
+    done = int(table["completed"].sum())
+    count = table["completed"].size
     told = swept if done == count else f"{swept}; {done} of {count} members completed"
     return f"{told}. {ends}" if (ends := study_figures.ends_in_words(mean, tables.LOUDNESS)) else told
 
@@ -292,7 +297,8 @@ def print_table(
     """
     shown = [name for name in names if name in table and (asked or not {*PLACES} & {*table[name].dims})]
     heading, rows = tables.columns_of(table[shown])
-    keys, title = len(tables.axes_of(table[shown])), "Study"
+    keys = len(tables.axes_of(table[shown]))
+    title = "Study"
     spread: list[list[object]] = []
     if scatter is not None:
         title = f"Study: mean ± standard deviation over {table.attrs['members']} values of {SEED}"
@@ -316,7 +322,8 @@ def _width(heading: str, cells: Sequence[str]) -> int:
 
 def _side_by_side(needs: Sequence[int], columns: Sequence[int], keys: int) -> Iterator[list[int]]:
     """Columns that one table is wide enough for; what is swept stands in each table."""
-    width, swept = line_width(WIDTH), list(columns[:keys])
+    width = line_width(WIDTH)
+    swept = list(columns[:keys])
     block = list(swept)
     for n in columns[keys:]:
         if len(block) > keys and 1 + sum(3 + needs[each] for each in (*block, n)) > width:

@@ -131,7 +131,8 @@ def _show(
     levelled: Surfaces, count: int, title: str, picture: Path, steps: recipes.Recipe
 ) -> tuple[dict[str, Any], Spectra]:
     """Print what is in lines, or in the first of a count of maps, and draw it; return numbers and spectra."""
-    first, lines = levelled[0], [each for each in levelled if isinstance(each, Profile)]
+    first = levelled[0]
+    lines = [each for each in levelled if isinstance(each, Profile)]
     beside = len(lines) > 1
     if beside and steps.lines is None:
         say("Taken for lines measured side by side, by its shape; --map takes it for a map.")
@@ -140,14 +141,17 @@ def _show(
         title += f", the first of {count} maps"
     (band, section), octaves = _filtered(first, steps), _third_octaves(lines)
     if isinstance(first, HeightMap):
-        heights, spectra = first.heights, _spectra_of_map(first)
+        heights = first.heights
+        spectra = _spectra_of_map(first)
         items = [(item, item.value, item.value) for item in statistics.areal_statistics(first, band)]
         chart = surface_chart(heights, first.spacing, spectra)
     else:
-        heights, spectra = side_by_side([line.heights for line in lines]), _spectra_of_lines(lines)
+        heights = side_by_side([line.heights for line in lines])
+        spectra = _spectra_of_lines(lines)
         items = statistics.line_statistics(lines, band, section)
         chart = lines_chart([line.heights for line in lines], first.spacing, spectra, octaves)
-    lead, waves = "Each line levelled" if beside else "Levelled", _band(items[0][0])
+    lead = "Each line levelled" if beside else "Levelled"
+    waves = _band(items[0][0])
     say(f"{lead}; wavelengths {waves}{'; mean (lowest to highest of a line)' * beside}:")
     for item, *ends in items:
         spread = " to ".join(_scaled(replace(item, value=value)) for value in ends)
@@ -205,8 +209,11 @@ def _write_spectra(spectra: Spectra, picture: Path) -> Path:
 
 def described(surfaces: Surfaces) -> str:
     """Say in one line what was read: a map or a line, several maps, or lines side by side."""
-    first, shares = surfaces[0], [surface.missing_share for surface in surfaces]
-    sizes, spacings, count = np.atleast_1d(first.size), np.atleast_1d(first.spacing), len(surfaces)
+    first = surfaces[0]
+    shares = [surface.missing_share for surface in surfaces]
+    sizes = np.atleast_1d(first.size)
+    spacings = np.atleast_1d(first.spacing)
+    count = len(surfaces)
     is_map = isinstance(first, HeightMap)
     many = f"a {'map' if is_map else 'line'} of"
     if count > 1:
@@ -272,7 +279,8 @@ def _homogeneity(surface: HeightMap | Profile) -> dict[str, Any] | None:
     """Print whether the texture of a map is the same everywhere; return its numbers, none of a line."""
     if not isinstance(surface, HeightMap) or min(surface.shape) < 2 * max(statistics.TILES):
         return None
-    whole, what = cleaning.nearly_complete(surface), "Homogeneity, Std and spectra are those of"
+    whole = cleaning.nearly_complete(surface)
+    what = "Homogeneity, Std and spectra are those of"
     if whole is None:
         share = f"{1.0 - cleaning.FILLED_SHARE_WARNED:.0%}"
         say(f"{what} a map with at least {share} of its points: --fill fills missing points.")

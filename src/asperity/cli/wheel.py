@@ -39,7 +39,8 @@ def show_wheel(section: str, highest: str | None, table: Path | None, picture: P
     modes = wheel.standing_modes(case.numerics.highest_frequency)
     rows = modes.table()
     if not len(rows):
-        received, allowed = f"{case.numerics.highest_frequency:g} Hz", "one with a mode below it"
+        received = f"{case.numerics.highest_frequency:g} Hz"
+        allowed = "one with a mode below it"
         raise InputError("highest frequency", received, allowed, "Raise it with --highest.")
     say(f"{section}: {rounded(wheel.drawn_mass, 4)} kg without its axle, held at a radius of "
         f"{1e3 * wheel.outline[:, 0].min():.4g} mm; {count_of(len(rows), 'mode')} under a radial force up to "

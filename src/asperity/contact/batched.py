@@ -111,7 +111,9 @@ def solve_batched(half_space: HalfSpace, block: Block, device: Device) -> None:
     require(
         half_space.cells == "whole", "cells of a scan on a device", repr(half_space.cells), "'whole'", remedy
     )
-    cells, count, first = half_space.shape[0] * half_space.shape[1], len(block.planes), 0
+    cells = half_space.shape[0] * half_space.shape[1]
+    count = len(block.planes)
+    first = 0
     size = min(int(MEMORY_SHARE * device.free_memory()) // (8 * FIELDS), LARGEST_TRANSFORM // PADDED) // cells
     size = min(count, max(1, size))
     while first < count:
@@ -142,17 +144,20 @@ def _solved(half_space: HalfSpace, b: Block, positions: slice, device: Device) -
     xp, influence = device.xp, half_space.influence
     rows = xp.arange(positions.start, positions.stop)[:, None] * b.stride + xp.arange(len(b.body))
     gap = xp.asarray(b.body) + xp.asarray(b.planes[positions])[:, None, None] - xp.asarray(b.rows)[rows]
-    pressure, taps = xp.zeros_like(gap), tuple(influence.taps.tolist())
+    pressure = xp.zeros_like(gap)
+    taps = tuple(influence.taps.tolist())
     edges = b.room.edges
     fields = (edges.softness, edges.drop, edges.flow) if len(edges.softness) else ()
     at_edges = [xp.asarray(each)[rows] for each in fields]
     softest = influence.softest + float(edges.softness.max(initial=0.0)) + edges.yielding
-    totals, counts = [], np.zeros(4, dtype=np.int64)
+    totals = []
+    counts = np.zeros(4, dtype=np.int64)
     for approach in b.approaches.tolist():
         overlapping = gap < approach
         along, across = (_cells(overlapping.any(axis=axis), xp) for axis in (2, 1))
         box = (xp.arange(len(gap))[:, None, None], along[:, :, None], across[:, None, :])
-        overlap, p = approach - gap[box], pressure[box]
+        overlap = approach - gap[box]
+        p = pressure[box]
         spectrum = xp.asarray(batched.padded_spectrum(influence.table, *p.shape[1:]))
         task = batched.BatchTask(spectrum, taps, b.hardness, softest, b.max_iterations, edges.yielding)
         fresh = ~p.any(axis=(1, 2))
@@ -162,7 +167,9 @@ def _solved(half_space: HalfSpace, b: Block, positions: slice, device: Device) -
         soft = (each[box] for each in at_edges)
         iterations, worst = batched.solve_batch(overlap, p, tolerance, task, xp, *soft)
         pressure[box] = p
-        total, missed, cut_off = p.sum(axis=(1, 2)), worst > tolerance, edge_share(pressure) > TRUNCATED
+        total = p.sum(axis=(1, 2))
+        missed = worst > tolerance
+        cut_off = edge_share(pressure) > TRUNCATED
         totals.append(device.to_host(total))
         counts += [int(each.sum()) for each in (total > 0.0, iterations, missed, cut_off)]
     return np.array(totals), counts
@@ -171,7 +178,8 @@ def _solved(half_space: HalfSpace, b: Block, positions: slice, device: Device) -
 def _cells(reached: DeviceArray, xp: Any) -> DeviceArray:
     """Cells (b, size) along a side of the window: from the first reached (b, n) on, as many as any takes."""
     n = reached.shape[1]
-    first, end = reached.argmax(axis=1), n - reached[:, ::-1].argmax(axis=1)
+    first = reached.argmax(axis=1)
+    end = n - reached[:, ::-1].argmax(axis=1)
     longest = int(xp.where(reached.any(axis=1), end - first, 0).max())
     size = min(n, max(longest, SMALLEST_BOX))
     return xp.minimum(first, n - size)[:, None] + xp.arange(size)

@@ -64,7 +64,8 @@ def kalker_coefficients(ratio: float, poisson: float) -> tuple[float, float, flo
     """
     real("ratio of the semi-axes", ratio, "a ratio from 0.05 to 20", at_least=0.05, at_most=20.0)
     real("Poisson's ratio", poisson, "from 0 to 0.5", at_least=0.0, at_most=0.5)
-    body, found = Material("body", 2.0 * (1.0 + poisson), poisson, 1.0), []
+    body = Material("body", 2.0 * (1.0 + poisson), poisson, 1.0)
+    found = []
     for n in GRIDS:
         space = HalfSpace(
             (n, n), (2.0 * math.sqrt(ratio) / n, 2.0 / math.sqrt(ratio) / n), 1.0 / (1.0 - poisson)
@@ -127,9 +128,12 @@ class RollingEllipse:
         l3 = math.pi * a * math.sqrt(a / b) / (4.0 * g * c23)
         y = b * (2.0 * (np.arange(STRIPS) + 0.5) / STRIPS - 1.0)
         edge = a * np.sqrt(1.0 - (y / b) ** 2)
-        step, traction, total = 2.0 * edge / STRIPS, np.zeros(STRIPS, dtype=complex), 0.0j
+        step = 2.0 * edge / STRIPS
+        traction = np.zeros(STRIPS, dtype=complex)
+        total = 0.0j
         for k in range(STRIPS):
-            x, moved = edge - (k + 0.5) * step, step if k else 0.5 * step
+            x = edge - (k + 0.5) * step
+            moved = step if k else 0.5 * step
             turning = spin / l3 * (1j * (x + 0.5 * moved) - y)
             traction = traction - moved * (creepage[0] / l1 + 1j * creepage[1] / l2 + turning)
             bound = 2.0 * limit / (math.pi * a * b) * (1.0 - (x / a) ** 2 - (y / b) ** 2)
@@ -162,12 +166,18 @@ def rolled_over(
     InputError
         If the sample has no room for it.
     """
-    space, body, length = smooth.half_space, smooth.undeformed_gap, contact_rows(smooth)
-    rows, spare, stride = len(body), len(heights) - len(body), math.ceil(length / STEPS)
+    space = smooth.half_space
+    body = smooth.undeformed_gap
+    length = contact_rows(smooth)
+    rows = len(body)
+    spare = len(heights) - len(body)
+    stride = math.ceil(length / STEPS)
     allowed = f"at least {rows + LEAST_LENGTHS * length} rows, the window and {LEAST_LENGTHS} contacts"
     remedy = "Lengthen it, in a case by contact.sample_length."
     require(has_room(smooth, heights), "sample to roll over", count_of(len(heights), "row"), allowed, remedy)
-    steps, contacts, pressure = min(LENGTHS * length, spare) // stride, list[Contact](), None
+    steps = min(LENGTHS * length, spare) // stride
+    contacts = list[Contact]()
+    pressure = None
     first = (spare - steps * stride) // 2
     for row in range(first, first + steps * stride + 1, stride):
         contacts.append(space.solve(body - heights[row : row + rows], load=smooth.force, start=pressure))
@@ -300,10 +310,12 @@ def creep_curve(
         last: SlidingContact | None = None
         for j, motion in enumerate(points):
             last = rolling.roll(smooth, motion[:2], motion[2], start=last, speed=speed)
-            force[0, j], share[0, j] = -last.force[axis], last.slip_area / smooth.area
+            force[0, j] = -last.force[axis]
+            share[0, j] = last.slip_area / smooth.area
         found = counted(in_order(rolled, samples), len(samples), "creep forces of rough samples", progress)
         for i, (ratio, slips) in enumerate(found, 1):
-            force[i], share[i] = ratio * force[0], slips
+            force[i] = ratio * force[0]
+            share[i] = slips
     fast = [-ellipse.fastsim_force(each[:2], each[2], full)[axis] for each in points]
     return CreepCurve(direction, xi, full, force, share, stuck * xi, np.array(fast))
 
@@ -402,7 +414,8 @@ class CreepingBodies:
 
 def forces_of(found: SlidingContact) -> Array:
     """Forces on the first body along and across, N, and moment about the normal, N m (3,)."""
-    forces, arms = np.array((*found.force, found.moment)), (1.0, 1.0, math.sqrt(found.normal.area))
+    forces = np.array((*found.force, found.moment))
+    arms = (1.0, 1.0, math.sqrt(found.normal.area))
     return np.where(np.abs(forces) > ROUNDING * found.limit * np.array(arms), forces, 0.0)
 
 

@@ -107,7 +107,8 @@ class Softness(NamedTuple):
 def check_edges(edges: Edges, half_space: "HalfSpace", shape: tuple[int, int]) -> None:
     """Refuse edges that are on other cells than a surface of so many rows and lines, or on unfit ones."""
     what, remedy = "edges of a contact", "Lay them on the cells of the contact."
-    own, given = edges.distance.shape, half_space.spacing
+    own = edges.distance.shape
+    given = half_space.spacing
     require(own == shape, what, f"shape {own}", f"shape {shape}", remedy)
     received, allowed = (
         f"cells of {rounded(1e6 * x, 6)} × {rounded(1e6 * y, 6)} µm" for x, y in (edges.spacing, given)

@@ -75,7 +75,8 @@ def _pressed(
 
 def _shifted(found: SlidingContact, before: SlidingContact | None, displacement: Displacement) -> float:
     """Work of a shift, J: a cell slips under the mean of its pressures and the coefficient it ends with."""
-    now, past = found.normal.pressure, (before or found).normal.pressure
+    now = found.normal.pressure
+    past = (before or found).normal.pressure
     slip = np.hypot(*found.slip)
     slip[found.sticks] = 0.0
     coefficient = _over(found.bound, now)

@@ -166,7 +166,8 @@ def _shape_of(ratio: float) -> tuple[float, float, float]:
 
     axis_ratio = 1.0
     if ratio <= 1.0 - 1e-12:
-        low, high = math.log(1e-9), 0.0
+        low = math.log(1e-9)
+        high = 0.0
         for _ in range(HALVINGS):
             middle = 0.5 * (low + high)
             low, high = (low, middle) if mismatch(math.exp(middle)) > 0.0 else (middle, high)
@@ -274,7 +275,8 @@ def groove_gap(across: ArrayLike, radius: float, groove_radius: float) -> Array:
     ndarray (n,)
         m. It is the parabola s²/2R_y up to a share of about s²/12r²: 1 % at s = r/3.
     """
-    angle, offset = np.asarray(across, dtype=float) / groove_radius, groove_radius - radius
+    angle = np.asarray(across, dtype=float) / groove_radius
+    offset = groove_radius - radius
     # r − ρ with ρ = e cos θ + √(R² − e² sin² θ), without taking near numbers from each other
     sine = offset * np.sin(angle)
     chord = sine**2 / (radius + np.sqrt(radius**2 - sine**2))

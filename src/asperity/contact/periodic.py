@@ -101,19 +101,25 @@ def at_approach(
     concave function of the lifted one, and Newton's method comes nearer from below; what overshoots
     elsewhere is halved.
     """
-    lowest, mean = float(gap.min()), float(gap.mean())
+    lowest = float(gap.min())
+    mean = float(gap.mean())
     require(
         half_space.hardness is not None or approach < mean,
         "approach of a periodic contact", f"{rounded(approach, 4)} m",
         f"less than the mean gap, {rounded(mean, 4)} m, at which elastic bodies touch everywhere",
         "Give the load, which goes on from there.",
     )  # fmt: skip
-    overlap, lifted, low, high, iterations = approach - lowest, approach, approach, np.inf, 0
+    overlap = approach - lowest
+    lifted = approach
+    low = approach
+    high = np.inf
+    iterations = 0
     if overlap <= 0.0:
         return half_space.at_approach(gap, approach, None, rtol)
     while True:
         contact = half_space.at_approach(gap, lifted, start, HALF * rtol * overlap / (lifted - lowest))
-        lowered, start = _lowered(contact), contact.pressure
+        lowered = _lowered(contact)
+        start = contact.pressure
         iterations += contact.iterations
         missing = approach - lowered.approach
         low, high = (lifted, high) if missing > 0.0 else (low, lifted)

@@ -97,7 +97,8 @@ def run_in(
         if cache is not None:
             cache.put(key, state)
     share = np.count_nonzero(lowering > job.tolerance) / max(int(np.count_nonzero(touched)), 1)
-    largest, counts = state["largest"], Counts(*state["counts"].tolist())
+    largest = state["largest"]
+    counts = Counts(*state["counts"].tolist())
     settled = bool(largest[-1] <= job.tolerance)
     return RunInHeights(heights - lowering, lowering, touched, largest, share, settled, counts)
 
@@ -124,8 +125,11 @@ def _pass(
 
 def _piece(heights: Array, state: dict[str, NDArray[Any]], job: RunningIn, positions: range) -> Counts:
     """Roll over a piece, from a cold start."""
-    space, rows, counts = job.half_space, job.body.shape[0], []
-    lowering, start = state["lowering"], None
+    space = job.half_space
+    rows = job.body.shape[0]
+    counts = []
+    lowering = state["lowering"]
+    start = None
     for first in positions:
         under = slice(first, first + rows)
         contact = space.at_load(job.body - (heights[under] - lowering[under]), job.load, start, job.rtol)

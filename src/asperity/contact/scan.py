@@ -370,9 +370,11 @@ def joined_states(scans: Sequence[ScannedForces]) -> ScannedForces:
     if len(scans) == 1:
         return scans[0]
     forces = [each.forces for each in scans]
-    counts, single = total(each.counts for each in scans), any(each.single for each in scans)
+    counts = total(each.counts for each in scans)
+    single = any(each.single for each in scans)
     with suppress(OSError), tempfile.TemporaryFile(prefix="asperity-") as file:
-        positions, states = forces[0].shape[1], sum(len(each) for each in forces)
+        positions = forces[0].shape[1]
+        states = sum(len(each) for each in forces)
         for first in range(0, positions, TOUCHED):
             piece = [each[:, first : first + TOUCHED].T for each in forces]
             file.write(np.concatenate(piece, axis=1).data)
@@ -388,7 +390,8 @@ def first_touch(surface: Array | Strip, body: Array, stride: int = 1, first: int
     It counts from the plane z = 0, and is usually negative: peaks touch before the planes meet. Surface,
     body, stride and first row as in `ScanJob`.
     """
-    strip, nx = Rows(surface) if isinstance(surface, np.ndarray) else surface, body.shape[0]
+    strip = Rows(surface) if isinstance(surface, np.ndarray) else surface
+    nx = body.shape[0]
     starts = range(first, strip.shape[0] - nx + 1, stride)
     result = np.empty(len(starts))
     lowest_first = np.argsort(body, axis=None, kind="stable")
@@ -397,7 +400,8 @@ def first_touch(surface: Array | Strip, body: Array, stride: int = 1, first: int
         block = starts[done : done + TOUCHED]
         lines = np.ascontiguousarray(strip.rows(block[0], block[-1] + nx).T)
         highest = sliding_window_view(lines.max(axis=0), nx)[::stride].max(axis=1)
-        nearest, gap = np.full(len(block), np.inf), np.empty(len(block))
+        nearest = np.full(len(block), np.inf)
+        gap = np.empty(len(block))
         for tried, (height, offset, line) in enumerate(cells):  # a cell over all positions at once
             if tried % CELLS == 0 and (np.subtract(height, highest, out=gap) >= nearest).all():
                 break  # this cell and all that are higher touch nothing first

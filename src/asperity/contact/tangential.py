@@ -117,9 +117,11 @@ class FrictionalHalfSpace:
         nu = np.array([body.poisson_ratio for body in bodies])
         compliance = 2.0 * (1.0 + nu) / np.array([body.youngs_modulus for body in bodies])  # 1/G
         total = float(compliance.sum())
-        self.shear_modulus, self.poisson_ratio = 2.0 / total, float(compliance @ nu) / total
+        self.shear_modulus = 2.0 / total
+        self.poisson_ratio = float(compliance @ nu) / total
         self.unlikeness = 0.25 * float(np.subtract(*((1.0 - 2.0 * nu) * compliance)))  # K/G, 1/Pa
-        modulus, shape = self.shear_modulus / (1.0 - self.poisson_ratio), np.shape(self.friction.static)
+        modulus = self.shear_modulus / (1.0 - self.poisson_ratio)
+        shape = np.shape(self.friction.static)
         same = math.isclose(modulus, half_space.modulus, rel_tol=1e-6)
         allowed = f"the {half_space.modulus:.6g} Pa of the half-space"
         require(
@@ -128,7 +130,8 @@ class FrictionalHalfSpace:
         fits = shape in ((), half_space.shape)
         require(fits, "friction", f"a map of shape {shape}", f"a number, or a map {half_space.shape}")
         dx, dy = half_space.spacing
-        x, y = dx * np.arange(32.0)[:, None], dy * np.arange(32.0)[None, :]
+        x = dx * np.arange(32.0)[:, None]
+        y = dy * np.arange(32.0)[None, :]
         along, across, _ = kernel.traction_displacement(x, y, dx, dy, self.poisson_ratio)
         own = along[0, 0]
         self._taps = inverse_stencil(0.5 * (along + across) / own)
@@ -253,9 +256,11 @@ class FrictionalHalfSpace:
         """
         if (ahead, steady) not in self._influences:
             (nx, ny), (dx, dy) = self.half_space.shape, self.half_space.spacing
-            x, y = dx * np.arange(1.0 - nx, nx)[:, None] + ahead, dy * np.arange(1.0 - ny, ny)[None, :]
+            x = dx * np.arange(1.0 - nx, nx)[:, None] + ahead
+            y = dy * np.arange(1.0 - ny, ny)[None, :]
             found = kernel.traction_displacement(x, y, dx, dy, self.poisson_ratio)
-            traction, spread = np.stack(found) / (math.pi * self.shear_modulus), np.zeros((1, 1), complex)
+            traction = np.stack(found) / (math.pi * self.shear_modulus)
+            spread = np.zeros((1, 1), complex)
             if self._couples:
                 spread = self.unlikeness / math.pi * kernel.pressure_displacement(x, y, dx, dy)
             if steady:
@@ -303,7 +308,8 @@ class FrictionalHalfSpace:
         motion = tuple(real("creepage or shift", each, "a finite number") for each in motion)
         found = self._rounds(normal, motion, manner)
         if wanted:
-            index, target = np.array(list(wanted)), np.array(list(wanted.values()))
+            index = np.array(list(wanted))
+            target = np.array(list(wanted.values()))
             found = self._under_force(normal, found, index, target, manner)
         if not found.converged:
             why = "let it fall over more slip velocity" if self.friction.falls else found.outcome.value
@@ -315,7 +321,8 @@ class FrictionalHalfSpace:
     def _doubt(self, found: SlidingContact, manner: _Manner) -> None:
         """Warn of what is outside the range of the theory."""
         (xi, eta, spin), words, creepage = found.creepage, [], math.hypot(*found.creepage[:2])
-        slips, area = found.slip_area, found.normal.area
+        slips = found.slip_area
+        area = found.normal.area
         slipping = percent(slips / area) if area else "nothing"
         if manner.ahead and creepage > LARGE_CREEPAGE:
             words.append(
@@ -344,7 +351,8 @@ class FrictionalHalfSpace:
     ) -> SlidingContact:
         """Find a motion by Broyden's iteration on −ln(1 − |F|/limit), which is about linear in creepage."""
         size = float(np.linalg.norm(target))
-        allowed, remedy = f"less than {rounded(found.limit, 6)} N of friction", "Press more, or ask for less."
+        allowed = f"less than {rounded(found.limit, 6)} N of friction"
+        remedy = "Press more, or ask for less."
         require(size < found.limit or size == 0.0, "force", f"{rounded(size, 6)} N", allowed, remedy)
 
         if not found.limit:
@@ -356,7 +364,10 @@ class FrictionalHalfSpace:
 
         motion = np.array(found.creepage)
         softness = self._influence(*manner.kernel)[2] / (manner.step * normal.area)
-        jacobian_inverse, low, high, longest = -softness * np.eye(len(index)), -math.inf, math.inf, math.inf
+        jacobian_inverse = -softness * np.eye(len(index))
+        low = -math.inf
+        high = math.inf
+        longest = math.inf
         missing = stretched(np.array(found.force)[index]) - stretched(target)
         for _ in range(MAX_ROUNDS):
             if np.abs(np.array(found.force)[index] - target).max() <= FORCES_AGREE * found.limit:
@@ -373,7 +384,8 @@ class FrictionalHalfSpace:
             motion[index] += change
             found = self._rounds(normal, tuple(motion.tolist()), manner._replace(start=found))
             after = stretched(np.array(found.force)[index]) - stretched(target)
-            along, moved = change @ jacobian_inverse, after - missing
+            along = change @ jacobian_inverse
+            moved = after - missing
             if along @ moved:
                 jacobian_inverse += np.outer(change - jacobian_inverse @ moved, along) / (along @ moved)
             missing = after
@@ -383,8 +395,10 @@ class FrictionalHalfSpace:
     def _rounds(self, normal: Contact, motion: tuple[float, ...], manner: _Manner) -> SlidingContact:
         """Solve until bound and pressure are those of the solution."""
         space, before = self.half_space, manner.before
-        velocity, slipped = np.zeros(space.shape), np.zeros(space.shape, dtype=bool)
-        past, counts = np.zeros(space.shape, complex), np.zeros(2, dtype=int)
+        velocity = np.zeros(space.shape)
+        slipped = np.zeros(space.shape, dtype=bool)
+        past = np.zeros(space.shape, complex)
+        counts = np.zeros(2, dtype=int)
         if before is not None:
             traction = before.traction[0] + 1j * before.traction[1]
             past = self.displacement(traction, before.normal.pressure, manner.ahead)
@@ -403,7 +417,8 @@ class FrictionalHalfSpace:
                 traction = found.traction[0] - 1j * found.traction[1]
                 gap = normal.undeformed_gap + _convolved(self._influence(0.0, False)[1], traction).real
                 loaded = space.at_load(gap, normal.force, loaded.pressure, 1e-8)
-            last, bound = bound, self.friction.coefficient(velocity, slipped) * loaded.pressure
+            last = bound
+            bound = self.friction.coefficient(velocity, slipped) * loaded.pressure
             if np.abs(bound - last).max() <= ROUNDS_AGREE * last.max():
                 break
             manner = manner._replace(start=found)
@@ -438,7 +453,8 @@ class FrictionalHalfSpace:
         iterations, convolutions, worst = kernel.solve_traction(box, linear, task)
         outcome = Outcome.CONVERGED if worst <= manner.rtol else Outcome.ITERATION_LIMIT
         fields = np.zeros((5, *contact.shape))
-        p, s = _cells(box.traction, box), _cells(box.slip, box) / manner.step
+        p = _cells(box.traction, box)
+        s = _cells(box.slip, box) / manner.step
         fields[:, *inside] = p.real, p.imag, s.real, s.imag, _cells(box.normal, box) == 0.0
         sticks = (fields[4] > 0.0) & (bound > 0.0)
         stored = (

@@ -53,10 +53,12 @@ def rubbing(rolling: FrictionalHalfSpace, contact: SlidingContact, before: Slidi
     moved = moved - rolling.displacement(past, before.normal.pressure, dx)
     xi, eta, spin = contact.creepage
     slip = xi + 1j * eta + spin * (1j * (x + SPIN_AHEAD * dx) - y) + moved / dx
-    traction, pressure = now.copy(), contact.normal.pressure.copy()
+    traction = now.copy()
+    pressure = contact.normal.pressure.copy()
     traction[:-1] += past[1:]
     pressure[:-1] += before.normal.pressure[1:]
-    work, sliding = -0.5 * (traction.conj() * slip).real, np.abs(slip) * (pressure > 0.0)
+    work = -0.5 * (traction.conj() * slip).real
+    sliding = np.abs(slip) * (pressure > 0.0)
     return Rubbing(work, 0.5 * pressure, sliding, contact.speed)
 
 
@@ -112,7 +114,8 @@ class EnergyWear:
 
     def __post_init__(self) -> None:
         _check_numbers(self, ("plateau", "onset"))
-        least, allowed = self.plateau / self.mild, "friction work at which the plateau is reached"
+        least = self.plateau / self.mild
+        allowed = "friction work at which the plateau is reached"
         require(
             self.onset >= least, "onset", f"{self.onset:g} Pa", f"at least the {least:.4g} Pa of {allowed}"
         )
@@ -179,7 +182,8 @@ class ArchardWear:
     def removal(self, rubbing: Rubbing) -> tuple[Array, NDArray[np.intp]]:
         """As in `WearLaw`."""
         slow, fast = (each / rubbing.speed for each in self.velocities)
-        limit, touching = self.limit * self.hardness, rubbing.pressure > 0.0
+        limit = self.limit * self.hardness
+        touching = rubbing.pressure > 0.0
         regime = ((rubbing.sliding > slow) & (rubbing.sliding < fast)).astype(np.intp)
         regime[rubbing.pressure > limit] = 2
         faster, fastest = (_share_above(rubbing.sliding, each, touching) for each in (slow, fast))
@@ -196,16 +200,21 @@ _STRIPS = (np.arange(8) - 3.5) / 8
 def _share_above(values: Array, limit: float, touching: NDArray[np.bool_]) -> Array:
     """Share of each cell (nx, ny) in which a quantity exceeds a limit, if it is linear across the cell."""
     rises = [_rise(values, touching, axis) for axis in (0, 1)]
-    steep, gentle, above = np.maximum(*rises), np.minimum(*rises), values - limit
+    steep = np.maximum(*rises)
+    gentle = np.minimum(*rises)
+    above = values - limit
     level = (above[..., None] + gentle[..., None] * _STRIPS) / np.where(steep > 0.0, steep, 1.0)[..., None]
     return np.where(steep > 0.0, np.clip(0.5 + level, 0.0, 1.0).mean(axis=-1), above > 0.0)
 
 
 def _rise(values: Array, touching: NDArray[np.bool_], axis: int) -> Array:
     """Size of the change of a quantity (nx, ny) across a cell along an axis, by neighbours in contact."""
-    values, touching = np.moveaxis(values, axis, 0), np.moveaxis(touching, axis, 0)
+    values = np.moveaxis(values, axis, 0)
+    touching = np.moveaxis(touching, axis, 0)
     both = touching[1:] & touching[:-1]
-    step, rise, count = np.diff(values, axis=0) * both, np.zeros_like(values), np.zeros_like(values)
+    step = np.diff(values, axis=0) * both
+    rise = np.zeros_like(values)
+    count = np.zeros_like(values)
     for side in (slice(1, None), slice(None, -1)):
         rise[side] += step
         count[side] += both
@@ -227,10 +236,13 @@ def _check_law(law: object) -> None:
 
 def _removal(law: WearLaw, rubs: Rubbing) -> tuple[Array, NDArray[np.intp]]:
     """What a law removes; it may be anyone's."""
-    what, shape, last = f"removal of {type(law).__name__}", rubs.work.shape, len(REGIMES) - 1
+    what = f"removal of {type(law).__name__}"
+    shape = rubs.work.shape
+    last = len(REGIMES) - 1
     allowed = f"depth over rolled distance, finite, and whole regimes from 0 to {last}, two arrays {shape}"
     depth, regimes = two(what, law.removal(rubs), allowed)
-    rate, regime = finite_array(what, depth, allowed, shape=shape), np.asarray(regimes)
+    rate = finite_array(what, depth, allowed, shape=shape)
+    regime = np.asarray(regimes)
     known = regime.shape == shape and regime.dtype.kind in "biu" and np.isin(regime, range(last + 1)).all()
     require(known, what, f"regimes of {regime.dtype}, shape {regime.shape}", allowed)
     return rate, regime.astype(np.intp)
@@ -419,9 +431,11 @@ def worn(
     _check_law(law)
     known = isinstance(rolling, FrictionalHalfSpace)
     require(known, "bodies that roll", type(rolling).__name__, "a half-space with two bodies and friction")
-    given, space = (*two("creepage", creepage, "two numbers"), spin), rolling.half_space
+    given = (*two("creepage", creepage, "two numbers"), spin)
+    space = rolling.half_space
     motion = tuple(real("creepage", each, "finite numbers") for each in given)
-    heights, shape = heights_on(space, surface, "surface to be worn"), space.shape
+    heights = heights_on(space, surface, "surface to be worn")
+    shape = space.shape
     shape_of = finite_array("body that wears", body, f"lengths in m, an array {shape}", shape=shape)
     check_window("wear", shape, heights.shape)
     check_settings(None, cache, progress)
@@ -472,7 +486,8 @@ def _passed(
     while (done := int(state["solved"][:, 0].sum())) < job.passes:
         message = f"wear, pass {done + 1} of {job.passes}"
         depth, volume, work, counts = _pass(heights - state["depth"], job, progress, message)
-        deepest, left = max(float(depth.max()), np.finfo(float).tiny), job.passes - done
+        deepest = max(float(depth.max()), np.finfo(float).tiny)
+        left = job.passes - done
         alike = max(int(min(job.step / deepest, left)), 1)
         row = [alike, deepest, *(alike * volume), alike * work, *counts]
         state = {"depth": state["depth"] + alike * depth, "solved": np.vstack([state["solved"], row])}
@@ -485,9 +500,14 @@ def _pass(
     heights: Array, job: _Wearing, progress: Progress | None, message: str
 ) -> tuple[Array, Array, float, Counts]:
     """Depth of one pass, its volume by regime, its friction work, and how its contacts went."""
-    space, rows, counts = job.bodies.half_space, job.body.shape[0], []
+    space = job.bodies.half_space
+    rows = job.body.shape[0]
+    counts = []
     tell, distance, (along, across, spin) = progress or (lambda *_: None), space.spacing[0], job.motion
-    depth, volume, work, start = np.zeros(heights.shape), np.zeros(len(REGIMES)), 0.0, None
+    depth = np.zeros(heights.shape)
+    volume = np.zeros(len(REGIMES))
+    work = 0.0
+    start = None
     before: SlidingContact | None = None
     positions = len(job.load)
     lead_in = rows if positions == len(heights) else 0  # a closed surface has been rolled over before
@@ -503,14 +523,16 @@ def _pass(
             after = roll(before=before)
         start = np.zeros_like(contact.pressure)
         start[:-1] = contact.pressure[1:]
-        rubs, before = rubbing(job.bodies, after, before), after
+        rubs = rubbing(job.bodies, after, before)
+        before = after
         if first < 0:
             continue
         rate, regime = _removal(job.law, rubs)
         depth[under] += distance * rate
         volume += distance * space.cell_area * np.bincount(regime.ravel(), rate.ravel(), len(REGIMES))
         work += distance * space.cell_area * float(rubs.work.sum())
-        flawed, cut_off = not (contact.converged and after.converged), contact.edge_share > TRUNCATED
+        flawed = not (contact.converged and after.converged)
+        cut_off = contact.edge_share > TRUNCATED
         counts.append(Counts(1, contact.iterations, int(flawed), int(cut_off)))
     tell(positions, positions, message)
     return depth, volume, work, total(counts)

@@ -224,15 +224,14 @@ def diagnose_together(
     duration = pieces[0].size / rate
     part, tone = max(tones.items(), key=lambda each: each[1].order)
     blows = f"the blows of the {NAMES[part]} at {rounded(tone.order * told, 4)} Hz"
-    received, allowed = (
-        f"{rounded(rate, 6)} Hz",
-        f"more than {rounded(2.0 * tone.order * told, 4)} Hz, to hold {blows}",
-    )
+    received = f"{rounded(rate, 6)} Hz"
+    allowed = f"more than {rounded(2.0 * tone.order * told, 4)} Hz, to hold {blows}"
     remedy = f"Is the speed, {rounded(told, 5)} Hz, in 1/min? Otherwise sample faster."
     require(rate > 2.0 * tone.order * told, "sampling rate of the signal", received, allowed, remedy)
     needed = 2.0 * LOWEST_PLACE / (tone.order * told)
     lines = f"the lines of the {NAMES[part]} at {rounded(tone.order * told, 4)} Hz"
-    received, allowed = f"{rounded(duration)} s", f"at least {rounded(needed)} s, to resolve {lines}"
+    received = f"{rounded(duration)} s"
+    allowed = f"at least {rounded(needed)} s, to resolve {lines}"
     require(duration >= needed, "duration of the signal", received, allowed, "Record longer.")
     stretches = [_without_clicks(each, each.size / rate * told) for each in stretches]
     pieces = equal_pieces(stretches, LONGEST * rate / told)
@@ -308,7 +307,8 @@ def decided(
     )
     if not struck:
         return replace(bare, faint=next((each for each in ranked if _near(each, told)), None))
-    best, rivals = struck[0], [each for each in struck if not _same(each, struck[0])]
+    best = struck[0]
+    rivals = [each for each in struck if not _same(each, struck[0])]
     margin = _worth(best, told) - max((_worth(each, told) for each in rivals), default=0.0)
     if _near(best, told):
         return _of_parts(bare, best, rivals, tones, margin)

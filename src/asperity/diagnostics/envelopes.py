@@ -71,7 +71,9 @@ def mean_spectrum(signals: Iterable[tuple[Array, float]], rate: float) -> tuple[
     level : float
         The mean level.
     """
-    frequency, power, levels = np.zeros(0), np.zeros(()), list[float]()
+    frequency = np.zeros(0)
+    power = np.zeros(())
+    levels = list[float]()
     for signal, level in signals:
         levels.append(level)
         frequency, amplitude = amplitude_spectrum(signal, rate)
@@ -112,7 +114,8 @@ def envelope_spectrum(signal: ArrayLike, rate: float, band: tuple[float, float] 
     """
     values, rate = checked_signal(signal, rate)
     low, high = (0.0, 0.5 * rate) if band is None else band
-    received, allowed = f"{low:g} to {high:g} Hz", f"rising, within 0 to {0.5 * rate:g} Hz"
+    received = f"{low:g} to {high:g} Hz"
+    allowed = f"rising, within 0 to {0.5 * rate:g} Hz"
     require(0.0 <= low < high <= 0.5 * rate, "band", received, allowed)
     frequency, amplitude = amplitude_spectrum(np.abs(analytic_signal(values, rate, low, high)), rate)
     kept = frequency <= high - low

@@ -220,15 +220,18 @@ class BearingRecord:
         """How clear combs are, and their tones, Hz: the clearest at any speed, and those of the parts."""
         lowest = min(tone.lowest for tone in tones) * told / RANGE
         highest = max(tone.highest for tone in tones) * told * RANGE
-        step, places = self.white.step, self.white.amplitude.size
-        low, high = max(lowest, 2 * LOWEST_PLACE * step), min(highest, step * places / 2.2)
+        step = self.white.step
+        places = self.white.amplitude.size
+        low = max(lowest, 2 * LOWEST_PLACE * step)
+        high = min(highest, step * places / 2.2)
         found = [each.strongest(low, high) for each in self.envelopes] if high > low else []
         found += [self._at_its_place(part, told) for part in tones]
         return [each for each in found if each[0]]
 
     def _at_its_place(self, part: Tone, told: float) -> tuple[float, float]:
         """The comb, a faint one too, where a part has it at the speed given; 0 for none."""
-        low, high = part.lowest * told * (1.0 - NEAR), part.highest * told * (1.0 + NEAR)
+        low = part.lowest * told * (1.0 - NEAR)
+        high = part.highest * told * (1.0 + NEAR)
         found = [(0.0, 0.0)]
         for view in self.envelopes:
             tones = np.linspace(low, high, 3 + int(15.0 * (high - low) / view.step))

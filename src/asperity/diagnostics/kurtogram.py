@@ -78,7 +78,8 @@ def kurtogram(signal: ArrayLike, rate: float, least_width: float = 0.0) -> Kurto
 
     values, rate = checked_signal(signal, rate)
     values = values / np.abs(values).max()
-    lines, rows = rfft(values), []
+    lines = rfft(values)
+    rows = []
     for count in SPLITS:
         width = 0.5 * rate / count
         if count > 1 and width < least_width:

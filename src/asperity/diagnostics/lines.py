@@ -165,7 +165,8 @@ def clear_families(found: Mapping[str, LineFamily], least: float = 0.0) -> list[
 
 def _without(frequency: Array, amplitude: Array, lines: LineFamily) -> Array:
     """Amplitudes (f,) with the median of all in place of the harmonics of lines and their side bands."""
-    step, first = frequency[1] - frequency[0], lines.expected * (1.0 + lines.deviation)
+    step = frequency[1] - frequency[0]
+    first = lines.expected * (1.0 + lines.deviation)
     order = np.arange(1, int(frequency[-1] / first) + 1)
     sides = lines.distance * np.arange(-2, 3)
     places = np.rint((order[:, None] * first + sides) / step).astype(int)[..., None]

@@ -77,7 +77,8 @@ class Prominence:
         medians = []
         for centre in centres:
             half = max(AROUND * centre, FEWEST)
-            first, last = max(int(centre - half), LOWEST_PLACE - 1), int(centre + half)
+            first = max(int(centre - half), LOWEST_PLACE - 1)
+            last = int(centre + half)
             medians.append(np.median(amplitude[min(first, amplitude.size - 1) : last]))
         background = np.interp(np.arange(amplitude.size), centres, medians)
         ratio = amplitude / np.maximum(background, 1e-300)

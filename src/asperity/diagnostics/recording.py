@@ -171,7 +171,9 @@ def _in_stretches(stretches: Sequence[Array], left_out: Mask, rate: float) -> st
 
 def _clipped(values: Array) -> tuple[float, str]:
     """Share of values (n,) at an end at which they are clipped, and what is told of it."""
-    middle, ends, count = np.median(values), [], 0
+    middle = np.median(values)
+    ends = []
+    count = 0
     for end in (values.min(), values.max()):
         within = np.abs(end - values) / max(abs(end - middle), 1e-300)
         here = int((within <= AT_THE_END).sum())
@@ -194,7 +196,8 @@ def _percent(share: float) -> str:
 
 def _offset(values: Array) -> str:
     """What is told of a mean that is large beside what moves."""
-    mean, rest = float(values.mean()), float(values.std())
+    mean = float(values.mean())
+    rest = float(values.std())
     if abs(mean) < OFFSET * rest:
         return ""
     times = f"{rounded(abs(mean) / rest, 2)} times the rms of the rest"

@@ -47,7 +47,8 @@ def faint_lines(found: Diagnosis) -> str:
     """What is said of lines that no fault is named for; empty where there are none."""
     if found.faint is None:
         return ""
-    tone, depth = _hertz(found.faint.blows, found), 100.0 * found.faint.depth
+    tone = _hertz(found.faint.blows, found)
+    depth = 100.0 * found.faint.depth
     why = "too little for a fault"
     if found.faint.part == "outer":
         why = "a sound bearing has them, too, as its balls pass through the load"

@@ -151,7 +151,8 @@ class Fitted:
     @property
     def headline(self) -> str:
         """What came of it in one sentence."""
-        values, fitted_keys = sum(each.count for each in self.measured), len(self.estimates)
+        values = sum(each.count for each in self.measured)
+        fitted_keys = len(self.estimates)
         told = f"{count_of(fitted_keys, 'key')} fitted to {count_of(values, 'value')}"
         names = [each.free.name for each in self.undetermined]
         left_open = f"; not determined: {in_a_row(names)}" if names else ""
@@ -167,7 +168,8 @@ class Fitted:
     def remarks(self) -> list[str]:
         """What is left, and what is doubtful of it, one sentence each."""
         values = count_of(sum(each.count for each in self.measured), "value")
-        left, before = self.rms(), self.rms(before=True)
+        left = self.rms()
+        before = self.rms(before=True)
         told = [f"Left: {rounded(left, 2)} dB rms of {values}, before {rounded(before, 2)} dB."]
         if limited := [each for each in self.estimates if each.limit]:
             names = in_a_row([each.name for each in limited])

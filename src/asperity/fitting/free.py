@@ -104,9 +104,11 @@ def free_key(case: AnyCase, dotted: str, within: Range | None = None) -> Free:
         entry.unit is not None and not getattr(kind, "whole", False), dotted, "a key to be fitted", allowed
     )
     try:
-        start, given = float(value_of(case, entry)), True
+        start = float(value_of(case, entry))
+        given = True
     except Unfit:
-        start, given = math.nan, False
+        start = math.nan
+        given = False
     if within is None and dotted in USUAL:
         least, most, why = USUAL[dotted]
         low, high = (float(entry.read(_read(each, kind), FROM_PYTHON)) for each in (least, most))
@@ -202,7 +204,8 @@ def read_range(what: str, within: object, unit: str) -> Range:
         found = _TO.fullmatch(within.strip())
         require(found, what, shown(within), allowed)
         assert found is not None
-        low, high = found[1].strip(), found[2].strip()
+        low = found[1].strip()
+        high = found[2].strip()
         if unit_in(high) and not unit_in(low):
             low = f"{low} {unit_in(high)}"
         within = (low, high)

@@ -140,7 +140,8 @@ class TriedCase:
         from asperity.fitting.observables import BUILT_IN
 
         def ran() -> Collected:
-            tree, found = run(self.whole, self.progress, brief=True), Collected()
+            tree = run(self.whole, self.progress, brief=True)
+            found = Collected()
             for each in BUILT_IN.values():
                 with suppress(KeyError):  # of another kind of case
                     found |= each.collect(tree) if each.collect is not None else {}

@@ -124,7 +124,8 @@ class Problem:
 
     def predicted(self, place: Array) -> list[Values]:
         """What the case predicts for each measurement (n,) at a place."""
-        changes, trials = self.changes(place), dict[str, TriedCase]()
+        changes = self.changes(place)
+        trials = dict[str, TriedCase]()
         found = []
         for each, of in zip(self.measured, self.observables, strict=True):
             here = repr(sorted(content(each.conditions).items()))

@@ -110,7 +110,8 @@ def _no_line(
     """Error about a table of which no line is as asked for: what the last of these columns holds."""
     if not asked:
         return InputError(path.name, "no line below its heading", "a measurement in each line")
-    told, name = " and ".join(f"{name}={value}" for name, value in asked.items()), list(asked)[-1]
+    told = " and ".join(f"{name}={value}" for name, value in asked.items())
+    name = list(asked)[-1]
     column = next(number for number, title in labels.items() if _plain(title) == _plain(name))
     held = list(dict.fromkeys(_cell(row, column) for row in rows))
     return InputError(path.name, f"no line where {told}", f"{name}: {listed(held)}")

@@ -149,7 +149,8 @@ def measured_for(
         several = isinstance(measured, Iterable) and not isinstance(measured, str | os.PathLike)
         each = list(measured) if several else [measured]  # type: ignore[call-overload]
         require(each, "what was measured", "nothing", "one file or more")
-        found, titles = list[Measured](), list[str]()
+        found = list[Measured]()
+        titles = list[str]()
         for one in each:
             if isinstance(one, Measured):
                 found.append(one)
@@ -225,7 +226,8 @@ def fitted(
     problem, minima = _searched(problem, places, progress)
     problem.held.clear()  # those of runs are found once more, where the search has ended
     while True:
-        best, slopes = minima.best, problem.slopes(minima.best.place)
+        best = minima.best
+        slopes = problem.slopes(minima.best.place)
         ends = _pushed(problem, best, slopes)
         inside = np.flatnonzero(ends == 0)
         spread = _spread(problem, best, len(inside))
@@ -251,7 +253,8 @@ def _known(
     """
     nothing = np.zeros(0)
     predicted = Problem(case, tuple(measured), (), progress=progress).predicted(nothing)
-    known, before = list[Measured](), list[Values]()
+    known = list[Measured]()
+    before = list[Values]()
     for each, values in zip(measured, predicted, strict=True):
         inside = np.isfinite(values)
         out = ", ".join(rounded(at, 4) for at in each.at[~inside])
@@ -283,7 +286,8 @@ def _searched(problem: Problem, starts: Sequence[Array], progress: Progress) -> 
     large as usual; it is found at the end, from what is left.
     """
     rough = replace(problem, fine=False, beyond=USUALLY_LEFT_OUT if problem.stated else 0.0)
-    words, found = f"search for {count_of(len(problem.free), 'key')}", list[Optimum]()
+    words = f"search for {count_of(len(problem.free), 'key')}"
+    found = list[Optimum]()
     for number, start in enumerate(starts if len(starts) > 1 else ()):
         progress(number, len(starts) + 1, words)
         found.append(_descent(rough, start, ROUGH))
@@ -313,7 +317,8 @@ def _descent(problem: Problem, start: Array, most: int) -> Optimum:
 
     def descended() -> dict[str, Array]:
         tolerance = OF_RUNS if problem.by_run else TOLERANCE
-        limits, slopes = (problem.low, problem.high), problem.quick_slopes
+        limits = (problem.low, problem.high)
+        slopes = problem.quick_slopes
         follow = updated_slopes(problem.residuals, slopes) if problem.by_run else slopes
         steps = RUNS_AGAIN if problem.held else RUNS
         count = steps if problem.by_run else most
@@ -332,7 +337,8 @@ def _pushed(problem: Problem, best: Optimum, slopes: Array) -> NDArray[np.int_]:
     """
     ends = on_limits(best.place, problem.low, problem.high)
     spread = _spread(problem, best, int(np.count_nonzero(ends == 0)))
-    gradient, size = slopes.T @ best.residuals, np.sum(slopes**2, axis=0)
+    gradient = slopes.T @ best.residuals
+    size = np.sum(slopes**2, axis=0)
     gain = gradient**2 / np.maximum(size, np.finfo(float).tiny) / spread.scale**2
     return np.where(gain > 1.0, ends, 0)
 
@@ -346,8 +352,10 @@ def _told(
     case: AnyCase, problem: Problem, before: list[Values], minima: _Minima, left_open: list[Undetermined]
 ) -> Fitted:
     """Lay out what was found."""
-    place, slopes = minima.best.place, problem.slopes(minima.best.place)
-    pushed, ends = _pushed(problem, minima.best, slopes), on_limits(place, problem.low, problem.high)
+    place = minima.best.place
+    slopes = problem.slopes(minima.best.place)
+    pushed = _pushed(problem, minima.best, slopes)
+    ends = on_limits(place, problem.low, problem.high)
     inside = np.flatnonzero(pushed == 0)
     spread = _spread(problem, minima.best, len(inside))
     spreads = determined.covariance(slopes[:, inside], spread)

@@ -83,7 +83,8 @@ def forward_slopes(residuals: Residuals, low: Array, high: Array) -> Jacobian:
     """Slopes of residuals (n, p) by differences forward, or back from an upper limit."""
 
     def slopes(place: Array) -> Array:
-        here, columns = residuals(place), []
+        here = residuals(place)
+        columns = []
         for number in range(len(place)):
             step = STEP if place[number] + STEP <= high[number] else -STEP
             columns.append((residuals(_moved(place, number, step)) - here) / step)

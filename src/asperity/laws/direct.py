@@ -134,7 +134,10 @@ class DirectOnPath:
     def __init__(
         self, law: Direct, half_space: HalfSpace, offsets: Array, other: DirectOnPath | None = None
     ) -> None:
-        self.law, self.half_space, self.offsets, self.other = law, half_space, offsets, other
+        self.law = law
+        self.half_space = half_space
+        self.offsets = offsets
+        self.other = other
         self._sharp = law.edges is not None or (other is not None and other.law.edges is not None)
         heights = np.zeros(half_space.shape)
         none = np.zeros(half_space.shape)
@@ -142,8 +145,10 @@ class DirectOnPath:
         soft = half_space.softness(self._without) if self._sharp else None
         self.block = half_space.block(heights, law.body, np.zeros(1), np.zeros(1), 0, law.rtol, soft=soft)
         self.pressure, self.start = self.block.pressures[:, 0]
-        self.counts, self.overlap = self.block.counts, 0.0
-        self._step, self._heights = -1, np.zeros(0)
+        self.counts = self.block.counts
+        self.overlap = 0.0
+        self._step = -1
+        self._heights = np.zeros(0)
         self._edges: Edges | None = None
         self._laid: tuple[float, Edges | None] = (math.nan, None)  # own edges at an offset
         self._tried = False  # whether there is a solution of this step
@@ -162,11 +167,13 @@ class DirectOnPath:
             self._step, self._heights, self._tried = step, self._under(step), False
             self._set_edges(step)
         if self._tried:
-            self.start[:], self.block.solved[0] = self.pressure, 1
+            self.start[:] = self.pressure
+            self.block.solved[0] = 1
         else:
             self._start(step)
         self.block.approaches[0], self.block.rows[:] = approach, self._heights
-        space, solved = self.half_space, int(self.counts[0])
+        space = self.half_space
+        solved = int(self.counts[0])
         rtol = min(self.law.rtol, AT_REST) if self._last is None else self.law.rtol
         space.solve_block(self.block._replace(compliance=compliance * space.cell_area, rtol=rtol))
         self._tried, overlap = True, approach - float(self.block.room.lowest.min())
@@ -196,10 +203,12 @@ class DirectOnPath:
 
     def restore(self, state: dict[str, NDArray[Any]]) -> None:
         """Go on from a saved state."""
-        self.counts[:], self.overlap = state["counts"], float(state["overlap"])
+        self.counts[:] = state["counts"]
+        self.overlap = float(state["overlap"])
         held = [Accepted(p.copy(), int(r)) for p, r in zip(state["pressures"], state["rows"], strict=True)]
         self._last, self._before = [*held, None, None][:2]
-        self._step, self._tried = -1, False
+        self._step = -1
+        self._tried = False
 
     def warn_of_flaws(self) -> None:
         """Warn of contacts that did not converge or were cut off."""
@@ -219,7 +228,8 @@ class DirectOnPath:
         """Find the edges in the window at a step, of both surfaces if there are two."""
         self._edges = self._edges_at(step)
         if self._sharp:
-            room, soft = self.block.room.edges, self.half_space.softness(self._edges or self._without)
+            room = self.block.room.edges
+            soft = self.half_space.softness(self._edges or self._without)
             for each, values in (
                 (room.softness, soft.softness),
                 (room.drop, soft.drop),
@@ -240,10 +250,13 @@ class DirectOnPath:
 
     def _edges_between(self, offset: float) -> Edges | None:
         """Edges in the window from an offset on: distances are straight between rows."""
-        first, count, edges = round(offset), self.law.body.shape[0], self.law.edges
+        first = round(offset)
+        count = self.law.body.shape[0]
+        edges = self.law.edges
         if edges is None or (edges.distance[first - 1 : first + count + 1] == FAR).all():
             return None
-        whole, low = abs(offset - first) < 1e-6, math.floor(offset)
+        whole = abs(offset - first) < 1e-6
+        low = math.floor(offset)
         low, share = (first, 0.0) if whole else (low, offset - low)
         return edges.rearranged(
             lambda field: (
@@ -255,7 +268,8 @@ class DirectOnPath:
 
     def _rows_at(self, offset: float) -> Array:
         """Rows of the texture from an offset on; between rows by quintic splines, which keep short waves."""
-        first, count = round(offset), self.law.body.shape[0]
+        first = round(offset)
+        count = self.law.body.shape[0]
         whole = abs(offset - first) < 1e-6
         rows = self.law.heights[first : first + count] if whole else self._between(offset)
         faults = self.law.faults
@@ -264,13 +278,16 @@ class DirectOnPath:
         nearer = faults[first : first + count]
         if whole:
             return rows + nearer
-        low, share = math.floor(offset), offset % 1.0
-        before, after = faults[low : low + count], faults[low + 1 : low + 1 + count]
+        low = math.floor(offset)
+        share = offset % 1.0
+        before = faults[low : low + count]
+        after = faults[low + 1 : low + 1 + count]
         straight = before + share * (after - before)
         found = np.where(np.abs(after - before) > self.law.drop, nearer, straight)
         edges = self._own_edges(offset)
         if edges is not None:
-            was, will_be = self.law.sound[low : low + count], self.law.sound[low + 1 : low + 1 + count]
+            was = self.law.sound[low : low + count]
+            will_be = self.law.sound[low + 1 : low + 1 + count]
             sound = np.where(was & will_be, found, np.maximum(before, after))
             found = np.where(edges.sound, sound, np.where(was | will_be, np.minimum(before, after), found))
         return np.asarray(rows + found)
@@ -282,13 +299,16 @@ class DirectOnPath:
         """Let a step start from the accepted pressures, else from nothing."""
         from asperity.kernels.scanning import continue_rolling
 
-        last, before, size = self._last, self._before, len(self.pressure)
+        last = self._last
+        before = self._before
+        size = len(self.pressure)
         self.block.solved[0] = 0
         if last is None or not 0 <= (rows := round(self.offsets[step]) - last.row) < size:
             return
         if before is None or not 0 <= last.row - before.row < size:
             before = last
-        moved, cap = last.row - before.row, self.half_space.pressure_cap
+        moved = last.row - before.row
+        cap = self.half_space.pressure_cap
         continue_rolling(last.pressure, before.pressure, rows, moved, cap, self.start)
         self.block.solved[0] = 1
 

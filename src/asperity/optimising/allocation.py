@@ -39,7 +39,8 @@ class Limits:
             low, high = self.lowest[crossed[0]], self.highest[crossed[0]]
             received = f"{low:g} dB as lowest, {high:g} dB as highest, in band {crossed[0] + 1}"
             raise InputError("bounds of the levels", received, "lowest below highest in every band")
-        least, most = rms_of(self.lowest), rms_of(self.highest)
+        least = rms_of(self.lowest)
+        most = rms_of(self.highest)
         wider = "Widen lowest, highest, reach, or the bands (longest, shortest)."
         if self.rms_at_least > most * (1.0 + 0.5 * SLACK):
             received = f"{engineering(self.rms_at_least, 'm')}"
@@ -117,10 +118,12 @@ def _balanced(response: Response, limits: Limits, left: Callable[[Array], float]
     def of(silence: float) -> float:
         return left(_shared(response, limits, silence))
 
-    cheapest, softest = _shared(response, limits, 0.0), _least_heard(response, limits)
+    cheapest = _shared(response, limits, 0.0)
+    softest = _least_heard(response, limits)
     if max(left(cheapest), left(softest)) < -SLACK:
         raise ComputationError(f"{_NOTHING} (a limit excludes the others)", _WIDER)
-    best, below = cheapest if cheap else softest, 0.0
+    best = cheapest if cheap else softest
+    below = 0.0
     if left(best) >= 0.0:
         return best
     low, high, *_ = _energies(limits)
@@ -147,7 +150,8 @@ def _least_heard(response: Response, limits: Limits) -> Array:
 
 def _energies(limits: Limits) -> tuple[Array, Array, float, float]:
     """Bounds of the energies of each band (b,), and of all together, µm²."""
-    low, high = energy_of(limits.lowest), energy_of(limits.highest)
+    low = energy_of(limits.lowest)
+    high = energy_of(limits.highest)
     least, most = ((1e6 * rms) ** 2 for rms in (limits.rms_at_least, limits.rms_at_most))
     return low, high, least, most
 
@@ -268,11 +272,13 @@ def _up_to(
     rolled: Callable[[Array], Trial], trials: list[Trial], limits: Limits, limit: float
 ) -> tuple[list[Trial], bool]:
     """Find the cheapest levels that keep a limit."""
-    response, before = _in_proportion(trials[-1]), len(trials)
+    response = _in_proportion(trials[-1])
+    before = len(trials)
     for _ in range(MOST_ROUNDS):
         last = trials[-1]
         trial = rolled(roughest(response, limits, limit))
-        trials, found = [*trials, trial], _in_proportion(trial)
+        trials = [*trials, trial]
+        found = _in_proportion(trial)
         weights = response.weights ** (1.0 - RELAXATION) * found.weights**RELAXATION
         response = Response(weights, found.floor)
         still = np.abs(trial.levels - last.levels).max() < SETTLED_LEVEL
@@ -288,7 +294,8 @@ def _quieter(
     first = trials[-1]
     response = _in_proportion(first)
     best = rolled(quietest(response, limits))
-    trials, response = [*trials, best], _by_slopes(response, first, best)
+    trials = [*trials, best]
+    response = _by_slopes(response, first, best)
     for _ in range(MOST_ROUNDS):
         wanted = quietest(response, limits)
         if response.level(wanted) > best.level - SETTLED_LEVEL:
@@ -298,7 +305,8 @@ def _quieter(
             if trial.level < best.level:
                 break
             trial = rolled(_between(trial.levels, best.levels))
-        trials, response = [*trials, trial], _by_slopes(response, best, trial)
+        trials = [*trials, trial]
+        response = _by_slopes(response, best, trial)
         if trial.level > best.level - SETTLED_LEVEL:
             return [*trials, min(best, trial, key=lambda each: each.level)], True
         best = trial
@@ -319,7 +327,8 @@ def _by_slopes(response: Response, last: Trial, trial: Trial) -> Response:
 
     A band whose energy comes from elsewhere, from other bands or another body, is not worth lowering.
     """
-    before, after = energy_of(last.levels), energy_of(trial.levels)
+    before = energy_of(last.levels)
+    after = energy_of(trial.levels)
     moved = np.abs(after - before) > LEAST_MOVE * np.maximum(before, after)
     slope = np.divide(
         trial.energies - last.energies, after - before, out=response.weights.copy(), where=moved

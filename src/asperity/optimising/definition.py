@@ -96,7 +96,8 @@ def _sound_power(tree: DataTree, law: str) -> Array:
     """The total of a run, A-weighted by bands as its page tells it, shared over lines as the force is."""
     held = tree[schema.RADIATED_POWER_LEVEL.group].to_dataset()
     power = held[schema.RADIATED_POWER_LEVEL.name].sel(law=law, radiator="total").values
-    centre, frequency = held[spectra.BAND.name].values, line_frequencies(tree)
+    centre = held[spectra.BAND.name].values
+    frequency = line_frequencies(tree)
     force = _psd(spectra.FORCE_PSD, tree, law)
     step = frequency[1] - frequency[0]
     density = np.zeros_like(force)
@@ -175,7 +176,8 @@ def bands_of(case: scene.Case, longest: float | None, shortest: float | None) ->
 
 def _measured(case: scene.Case) -> tuple[Array, Array]:
     """Levels of the path, mean over its lines, at the wavelengths that it holds, the longest first."""
-    textures, spacing = preparing.prepare(case).textures, case.contact.spacing
+    textures = preparing.prepare(case).textures
+    spacing = case.contact.spacing
     line = Profile(textures.line - textures.line.mean(), spacing)
     if textures.path is None:
         wavelength, levels = band_levels_of(line)

@@ -115,7 +115,9 @@ class Optimised:
     @property
     def active(self) -> list[str]:
         """Limits that the texture found lies on."""
-        limits, levels, aim = self.limits, self.after.levels[self.after.changed], self.aim
+        limits = self.limits
+        levels = self.after.levels[self.after.changed]
+        aim = self.aim
         found = []
         if aim.limit is not None and abs(self.trials[-1].level - aim.limit) < 2 * AT_A_BOUND:
             found.append("limit")

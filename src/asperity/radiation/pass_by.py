@@ -68,7 +68,8 @@ class Passage:
     @property
     def passed(self) -> tuple[float, float] | None:
         """Times, s, at which front and rear of the train are opposite the receiver; None without a length."""
-        last, count = float(self.axles[-1]), len(self.axles)
+        last = float(self.axles[-1])
+        count = len(self.axles)
         if self.length is None and count == 1:
             return None
         length = last * count / (count - 1) if self.length is None else self.length
@@ -83,7 +84,8 @@ class Passage:
         start, end = self.passed or (0.0, 0.0)
         beyond = -start * self.speed
         lead = 10.0 * receiver.distance + 3.0 * longest + 3.0 * beyond  # at 1/d² −10 dB are at 2.2 `beyond`
-        first, last = start * self.speed - lead, end * self.speed + lead
+        first = start * self.speed - lead
+        last = end * self.speed + lead
         count = int(np.ceil((last - first) / receiver.distance * STEPS)) + 1
         return np.linspace(first, last, count) / self.speed
 
@@ -124,7 +126,8 @@ def pass_by_levels(time: ArrayLike, squared: ArrayLike, passed: tuple[float, flo
     TEL is 10 lg (1/Tp) ∫ p_A²/p_0² dt from when the level lies 10 dB below that of the front just opposite to
     when it lies 10 dB below that of the rear (ISO 3095:2013). No time weighting enters it.
     """
-    instants, parts = np.asarray(time, dtype=float), np.asarray(squared, dtype=float)
+    instants = np.asarray(time, dtype=float)
+    parts = np.asarray(squared, dtype=float)
     step = float(instants[-1] - instants[0]) / (len(instants) - 1)
     maximum = pressure_level(time_weighted(parts, step).max(axis=-1))
     if passed is None:

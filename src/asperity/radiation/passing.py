@@ -42,8 +42,10 @@ def passed_points(
     """
     bay_length = kernel.track.sleeper_spacing
     places = np.atleast_1d(finite_array("points on the rail (m)", points)) / bay_length
-    first, stride = origin / bay_length, kernel.speed * kernel.time_step / bay_length  # in bays
-    count, taps = forces.shape[1], kernel.weights.shape[1]
+    first = origin / bay_length
+    stride = kernel.speed * kernel.time_step / bay_length  # in bays
+    count = forces.shape[1]
+    taps = kernel.weights.shape[1]
     waves = _Waves(kernel, next_fast_len(taps + min(count, math.ceil(1.0 / stride)), real=True))
     passed = [_Point(waves, place, taps) for place in places]
     displacement = np.zeros((len(places), len(forces), count))
@@ -51,9 +53,11 @@ def passed_points(
 
     def by_forces_in(bay: int) -> tuple[slice, list[Array]]:
         begin, end = (min(max(0, math.ceil((at - first) / stride)), count) for at in (bay, bay + 1))
-        within, acting = first + stride * np.arange(begin, end) - bay, forces[:, begin:end]
+        within = first + stride * np.arange(begin, end) - bay
+        acting = forces[:, begin:end]
         sides = {point.side(bay) for point in passed} - {0}
-        sent, until = waves.sent(bay, acting, within, sides), min(end + taps, count)
+        sent = waves.sent(bay, acting, within, sides)
+        until = min(end + taps, count)
         moved = [point.moved(bay, acting, within, sent)[:, : until - begin] for point in passed]
         return slice(begin, until), moved
 
@@ -74,7 +78,8 @@ class _Waves:
 
     def __init__(self, kernel: MovingKernel, taps: int) -> None:
         self.grid = HatResponse(kernel.track, kernel.time_step, taps, ZONES)
-        nodes, self.track = chebpts1(TERMS), kernel.track
+        nodes = chebpts1(TERMS)
+        self.track = kernel.track
         self._near: dict[int, dict[int, Complex]] = {}
         first_zone = self.grid.waves.at_first(taps + 1)
         self.far = []  # in single precision, which takes half the time: they move a point by a few per cent
@@ -108,9 +113,11 @@ class _Point:
     """A point of the rail, in bays from the sleeper at zero, and what forces elsewhere do there."""
 
     def __init__(self, waves: _Waves, place: float, taps: int) -> None:
-        self.waves, self.bay = waves, math.floor(place)
+        self.waves = waves
+        self.bay = math.floor(place)
         self.at = place - self.bay  # from 0 to 1
-        shapes, at = waves.grid.waves.bay(self.bay), self.at * waves.track.sleeper_spacing
+        shapes = waves.grid.waves.bay(self.bay)
+        at = self.at * waves.track.sleeper_spacing
         amplitude = waves.grid.hat * shapes.coefficients
         self.felt = {1: amplitude * shapes.incoming(at), -1: amplitude * shapes.outgoing(at)}  # m, (2, f)
         self.responses = {bay: self._hats(bay)[:, :taps] for bay in (-1, 0, 1)}
@@ -121,7 +128,8 @@ class _Point:
 
     def moved(self, bay: int, forces: Array, places: Array, sent: dict[int, Complex]) -> Array:
         """Displacement here, m, (runs, n), by the forces in a bay and the waves that they send out."""
-        side, distance = self.side(bay), bay - self.bay
+        side = self.side(bay)
+        distance = bay - self.bay
         if not side:
             return _convolved(forces, self.responses[distance], places * NODES)
         received = self._received(side, distance, slice(self.waves.grid.taps + 1))

@@ -70,7 +70,8 @@ class PorousGround:
         C. F. Chien and W. W. Soroka, J. Sound Vib. 43 (1975) 9, here for e^{+iωt}: with the admittance β
         R_p = (cos θ − β)/(cos θ + β), w = (1 − i)/2 √(kR) (cos θ + β), F = 1 − i√π w exp(−w²) erfc(iw).
         """
-        admittance, cos = 1.0 / self.impedance(frequency), np.asarray(cosine, dtype=float)
+        admittance = 1.0 / self.impedance(frequency)
+        cos = np.asarray(cosine, dtype=float)
         plane = (cos - admittance) / (cos + admittance)
         path = np.sqrt(wavenumber(np.asarray(frequency, dtype=float)) * np.asarray(distance, dtype=float))
         w = (0.5 - 0.5j) * path * (cos + admittance)
@@ -99,8 +100,10 @@ class PorousGround:
         such that it radiates its power over hard ground.
         """
         source, receiver = heights
-        direct, reflected = np.hypot(along, receiver - source), np.hypot(along, receiver + source)
-        cosine, difference = (receiver + source) / reflected, reflected - direct
+        direct = np.hypot(along, receiver - source)
+        reflected = np.hypot(along, receiver + source)
+        cosine = (receiver + source) / reflected
+        difference = reflected - direct
         turns = 0.25 * float(wavenumber(band).max() * difference.max())  # of the phase over a band
         nodes, weights = np.polynomial.legendre.leggauss(_FEWEST_NODES + int(np.ceil(turns)))
         mean = np.zeros((len(band), len(along)))
@@ -213,7 +216,8 @@ class SoundPath:
         return 0.5 * (found + heard * self._from_rail(height, far, along, motion))
 
     def _from_rail(self, height: float, lateral: float, along: Array, motion: str) -> Array:
-        away, rise = np.hypot(lateral, along), self.receiver.height - height
+        away = np.hypot(lateral, along)
+        rise = self.receiver.height - height
         if self.ground is None:
             found = np.broadcast_to(1.0 / (away**2 + rise**2), (len(self.band), len(along)))
         else:
@@ -224,7 +228,8 @@ class SoundPath:
             return found if moved is None else found * 3.0 * moved**2 / (away**2 + rise**2)
         if self.directivity == cnossos.EVEN:
             return found
-        azimuth, elevation = np.arctan2(lateral, along), np.arctan2(rise, away)
+        azimuth = np.arctan2(lateral, along)
+        elevation = np.arctan2(rise, away)
         return found * _strength(azimuth, elevation, self.band) / _mean_strength(self.band)
 
     def spread(self, height: float, length: Array, along: Array, motion: str = "all") -> Array:
@@ -250,7 +255,8 @@ class SoundPath:
 
     def integral(self, height: float, motion: str = "all") -> Array:
         """Integral of `inverse_square` along the whole rail (b,), 1/m; over hard ground π/d."""
-        angle, lateral = 0.5 * np.pi * (np.arange(_ANGLES) + 0.5) / _ANGLES, self.receiver.distance
+        angle = 0.5 * np.pi * (np.arange(_ANGLES) + 0.5) / _ANGLES
+        lateral = self.receiver.distance
         found = self.inverse_square(height, lateral * np.tan(angle), motion) * lateral / np.cos(angle) ** 2
         return np.asarray(np.pi * found.mean(axis=-1))
 

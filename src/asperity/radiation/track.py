@@ -310,8 +310,10 @@ def squared_lateral_mobility(
         sides.
     """
     omega = 2.0 * np.pi * above_zero(frequency)
-    waves, spacing = track.waves(omega), track.track.sleeper_spacing
-    low, high = -track.foot_depth, track.head_height
+    waves = track.waves(omega)
+    spacing = track.track.sleeper_spacing
+    low = -track.foot_depth
+    high = track.head_height
     slope = 0.5 * (high + low)
     height = np.array([[1.0, slope], [slope, (high**2 + high * low + low**2) / 3.0]])
     count = FEWEST_NODES + int(np.ceil(np.abs(waves.wavenumbers).max() * spacing))
@@ -325,7 +327,9 @@ def squared_lateral_mobility(
 
     bay = within(np.stack([waves.outgoing(spacing * x) for x in node]), spacing)
     product = waves.multipliers.conj()[:, None] * waves.multipliers
-    behind, forces, found = bay * product / (1.0 - product), track.contact_shapes(place), []
+    behind = bay * product / (1.0 - product)
+    forces = track.contact_shapes(place)
+    found = []
     for x0 in places:
         sent = waves.coefficients * np.einsum("aj...,na->nj...", waves.incoming(x0), forces)
         rest = spacing - x0

@@ -90,7 +90,8 @@ def filter_spectra(
     Means are removed before the Hann window, and *power*, not amplitude, is averaged over the lines. Bands
     are a twelfth of an octave wide, or a bin where that is wider.
     """
-    f, z = np.atleast_2d(forces), np.atleast_2d(lines)
+    f = np.atleast_2d(forces)
+    z = np.atleast_2d(lines)
     states, m = f.shape
     stride = z.shape[1] // m
     require(m >= FEWEST_POSITIONS, "scan for the filter", f"{m} forces", f"at least {FEWEST_POSITIONS}")
@@ -137,13 +138,15 @@ def estimate_filter(
     all strips are averaged over a sixth of an octave: a polynomial of low degree cannot hold the knee of the
     filter. The fit lies between `FLOOR` and one.
     """
-    k, lines = strips[0].wavenumber, np.array([s.lines for s in strips])
+    k = strips[0].wavenumber
+    lines = np.array([s.lines for s in strips])
     forces = np.array([s.force for s in strips])
     tangent = np.broadcast_to(np.asarray(tangent_stiffness, dtype=np.float64), lines.shape[1:2])
     limit = np.broadcast_to(np.asarray(asymptote, dtype=np.float64), tangent.shape)
     low = (k <= limit[:, None]) | (np.arange(k.size) < 3)
     anchored = np.sqrt((forces * low).sum(axis=2) / (lines * low).sum(axis=2))
-    printed, whole = normalise == "low-wavenumber", lines.sum(axis=0)
+    printed = normalise == "low-wavenumber"
+    whole = lines.sum(axis=0)
     # a strip that is never touched in a state has no force to scale: what it lets pass is nothing
     scale = np.where(printed, np.where(anchored > 0.0, anchored, 1.0), tangent)
     forces = forces / scale[:, :, None] ** 2
@@ -158,7 +161,8 @@ def estimate_filter(
         fitted = fits.mean(axis=0)
     raw = np.sqrt(forces.sum(axis=0) / known.sum(axis=0))
     spread = fits.std(axis=0, ddof=1) if len(fits) > 1 else np.zeros(fits.shape[1:])
-    share, states = (whole * low).sum(axis=1) / whole.sum(axis=1), np.asarray(approaches, dtype=np.float64)
+    share = (whole * low).sum(axis=1) / whole.sum(axis=1)
+    states = np.asarray(approaches, dtype=np.float64)
     spectra = (raw, fitted, spread, *_regressed(weights, tangent, strips))
     return ContactFilter(states, k, excited, *spectra, anchored.mean(axis=0), tangent, share, normalise)
 
@@ -223,9 +227,11 @@ def closed_form(approaches: Array, wavenumber: Array, semi_axes: Array, stiffnes
     (k,), cycles/m.
     """
     signed = punch_filter(wavenumber[None, :], semi_axes[:, None])
-    none, every = np.full_like(signed, math.nan), np.ones_like(signed)
+    none = np.full_like(signed, math.nan)
+    every = np.ones_like(signed)
     spectra = none, np.clip(np.abs(signed), FLOOR, 1.0), np.zeros_like(signed), signed, every
-    share, excited = np.ones(stiffness.shape), np.ones(wavenumber.shape, dtype=bool)
+    share = np.ones(stiffness.shape)
+    excited = np.ones(wavenumber.shape, dtype=bool)
     return ContactFilter(
         approaches, wavenumber, excited, *spectra, stiffness, stiffness, share, normalise="tangent"
     )
@@ -304,8 +310,10 @@ def design_fir(
     """
     if order is not None:
         return LineFilter(contact_filter, _by_window(contact_filter, spacing, order), spacing)
-    fine, most = _fine(contact_filter), max(2, 2 * (min(most, LARGEST_ORDER) // 2))
-    fitted, order = _target(contact_filter, fine), min(max(2, least), most)
+    fine = _fine(contact_filter)
+    most = max(2, 2 * (min(most, LARGEST_ORDER) // 2))
+    fitted = _target(contact_filter, fine)
+    order = min(max(2, least), most)
     while True:
         with one_thread_in_linear_algebra():
             taps = _of_least_relative_error(contact_filter, spacing, order)
@@ -330,12 +338,16 @@ def _of_least_relative_error(contact_filter: ContactFilter, spacing: float, orde
     equations of sums and differences of lags: those of the transforms of the weight and of the weighted
     target. As the weight is positive, so are they definite.
     """
-    points, count = 2 ** math.ceil(math.log2(max(8 * order, 2048))), order // 2 + 1
-    wavenumber, least = np.arange(points // 2 + 1) / points, 10.0 ** ((DOWN_TO - 3.0) / 20.0)
-    octaves, taps = np.maximum(wavenumber, contact_filter.wavenumber[0] * spacing), []
+    points = 2 ** math.ceil(math.log2(max(8 * order, 2048)))
+    count = order // 2 + 1
+    wavenumber = np.arange(points // 2 + 1) / points
+    least = 10.0 ** ((DOWN_TO - 3.0) / 20.0)
+    octaves = np.maximum(wavenumber, contact_filter.wavenumber[0] * spacing)
+    taps = []
     for target in _target(contact_filter, wavenumber / spacing):
         weight = 1.0 / (np.maximum(target, least) ** 2 * octaves)
-        of_weight, of_target = np.fft.irfft(weight, points), np.fft.irfft(weight * target, points)
+        of_weight = np.fft.irfft(weight, points)
+        of_target = np.fft.irfft(weight * target, points)
         apart = sliding_window_view(np.concatenate([of_weight[count - 1 : 0 : -1], of_weight[:count]]), count)
         together = sliding_window_view(of_weight[: 2 * count - 1], count)
         cosines = cho_solve(cho_factor(0.5 * (apart[::-1] + together), overwrite_a=True), of_target[:count])

@@ -48,13 +48,15 @@ class ForceCurve:
         start of the force, 3/2 for contact of solids. First touch lies where g, continued straight below its
         first positive sample, vanishes, but not below the last sample with zero force.
         """
-        s, f = np.asarray(approach, dtype=float), np.asarray(force, dtype=float)
+        s = np.asarray(approach, dtype=float)
+        f = np.asarray(force, dtype=float)
         _check_samples(f)
         g = continued_to_touch(s, f[None] ** (1.0 / exponent))[0]
         first = int(np.argmax(g > 0.0))
         slope = np.diff(g)[first - 1] / np.diff(s)[first - 1] if first else monotone_slopes(s, g)[0]
         s, g = s[first:], g[first:]
-        s, g = np.concatenate([[s[0] - g[0] / slope], s]), np.concatenate([[0.0], g])
+        s = np.concatenate([[s[0] - g[0] / slope], s])
+        g = np.concatenate([[0.0], g])
         slopes = monotone_slopes(s, g)
         if stiffness is not None:
             known = np.asarray(stiffness, dtype=float)[first:] / (exponent * g[1:] ** (exponent - 1.0))
@@ -105,16 +107,19 @@ class ForceCurve:
         A force is not negative unless the curve is bilateral.
         """
         f = np.asarray(force, dtype=float)
-        remedy, pushing = "A contact without adhesion only pushes.", self.bilateral or np.all(f >= 0.0)
+        remedy = "A contact without adhesion only pushes."
+        pushing = self.bilateral or np.all(f >= 0.0)
         require(pushing, "contact force (N)", f.min(initial=0.0), "zero or more", remedy)
         g = f if self.exponent == 1.0 else f ** (1.0 / self.exponent)
         interval = np.clip(np.searchsorted(self.coefficients[:, 3], g) - 1, 0, len(self.coefficients) - 1)
         cubic, square, slope, value = np.moveaxis(self.coefficients[interval], -1, 0)
-        low, high = self.knots[interval], self.knots[interval + 1]
+        low = self.knots[interval]
+        high = self.knots[interval + 1]
         for _ in range(64):  # halving a cubic's interval to rounding
             middle = 0.5 * (low + high)
             below = self._root(middle)[0] < g
-            low, high = np.where(below, middle, low), np.where(below, high, middle)
+            low = np.where(below, middle, low)
+            high = np.where(below, high, middle)
         end_value, end_slope = self._root(self.knots[-1])
         beyond = self.knots[-1] + (g - end_value) / end_slope
         curved = np.where(g > end_value, beyond, 0.5 * (low + high))
@@ -138,7 +143,9 @@ class ForceCurve:
 
 
 def _check_samples(force: Array) -> None:
-    what, positive, negative = "forces of the force curve", force > 0.0, np.count_nonzero(force < 0.0)
+    what = "forces of the force curve"
+    positive = force > 0.0
+    negative = np.count_nonzero(force < 0.0)
     received = f"{positive.sum()} positive and {negative} negative forces"
     remedy = "Choose contact.approaches that reach into the contact."
     enough = positive.sum() >= 2 and not negative

@@ -41,7 +41,8 @@ class StateTexture:
         """One line texture for all states: that at an approach, m."""
         states = self.approaches
         above = int(np.clip(np.searchsorted(states, approach), 1, max(len(states) - 1, 1)))
-        lower, upper = above - 1, min(above, len(states) - 1)
+        lower = above - 1
+        upper = min(above, len(states) - 1)
         step = states[upper] - states[lower]
         share = float(np.clip((approach - states[lower]) / step, 0.0, 1.0)) if step else 0.0
         heights = (1.0 - share) * self.heights[lower] + share * self.heights[upper]
@@ -69,7 +70,8 @@ def grid_index(what: str, points: int, start: float, spacing: float, positions: 
     index = (np.atleast_1d(np.asarray(positions, dtype=float)) - start) / spacing
     last = points - 1
     slack = 1e-6  # of a spacing: rounding of the positions
-    least, most = index.min(), index.max()
+    least = index.min()
+    most = index.max()
     received = f"{start + spacing * least:.6g} to {start + spacing * most:.6g}"
     allowed = f"{start:.6g} to {start + spacing * last:.6g}, where the {what} is known"
     inside = least >= -slack and most <= last + slack
@@ -87,7 +89,8 @@ class LongConvolution:
     """
 
     def __init__(self, weights: Array, piece: int = CONVOLVED) -> None:
-        self.reach, self.piece = weights.shape[-1] - 1, piece
+        self.reach = weights.shape[-1] - 1
+        self.piece = piece
         self.period = next_fast_len(piece + self.reach, real=True)
         self.transfer = rfft(weights, self.period)
 
@@ -123,7 +126,8 @@ def punch_weights(spacing: tuple[float, float], semi_axes: tuple[float, float]) 
     rows = max(0, math.ceil(a / dx - 0.5))
     edges_y = np.clip((np.arange(-columns, columns + 2) - 0.5) * dy / b, -1.0, 1.0)
     edges_x = (np.arange(-rows, rows + 2) - 0.5) * dx
-    low, high = np.arcsin(edges_y[:-1]), np.arcsin(edges_y[1:])
+    low = np.arcsin(edges_y[:-1])
+    high = np.arcsin(edges_y[1:])
     theta = 0.5 * (low + high)[:, None] + 0.5 * (high - low)[:, None] * _NODES
     chord = a * np.cos(theta)
     cumulative = np.arcsin(np.clip(edges_x[:, None, None] / chord, -1.0, 1.0)) / math.pi
@@ -148,9 +152,11 @@ def areal_texture(
     axes = np.atleast_2d(np.asarray(semi_axes, dtype=np.float64))
     strip = Rows(heights) if isinstance(heights, np.ndarray) else heights
     n, ny = strip.shape
-    width, widest = ny * spacing[1], 2 * axes[:, 1].max()
+    width = ny * spacing[1]
+    widest = 2 * axes[:, 1].max()
     allowed = f"at least the width of the widest patch, {rounded(widest)} m"
-    received, remedy = f"{rounded(width)} m", "Enlarge contact.window."
+    received = f"{rounded(width)} m"
+    remedy = "Enlarge contact.window."
     require(widest <= width, "width of the texture strip", received, allowed, remedy)
     middle = ny // 2
     halves = [_half(punch_weights(spacing, (float(a), float(b))), middle) for a, b in axes]
@@ -159,9 +165,11 @@ def areal_texture(
     for row, half in zip(weights, halves, strict=True):
         side = reach - half.shape[0] // 2
         row[: half.shape[1], side : 2 * reach + 1 - side] = -half.T
-    averaged, result = LongConvolution(weights, min(PIECE, n)), np.empty((len(axes), n))
+    averaged = LongConvolution(weights, min(PIECE, n))
+    result = np.empty((len(axes), n))
     for first in range(0, n, PIECE):
-        low, high = max(0, first - reach), min(n, first + PIECE + reach)
+        low = max(0, first - reach)
+        high = min(n, first + PIECE + reach)
         rows = strip.rows(low, high)
         folded = rows[:, middle : middle + weights.shape[1]].copy()
         folded[:, 1:] += rows[:, middle - 1 :: -1][:, : folded.shape[1] - 1] if middle else 0.0

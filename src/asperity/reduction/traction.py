@@ -148,19 +148,23 @@ def traction_states(
     stuck = FrictionalHalfSpace(half_space, (both, both), UNLIMITED)
 
     def pressed(sample: Array) -> list[Array]:
-        found, start, gap_here = list[Array](), None, gap - middle_of(sample, nx)
+        found = list[Array]()
+        start = None
+        gap_here = gap - middle_of(sample, nx)
         for approach in r.tolist():
             contact = half_space.solve(gap_here, approach=approach, start=start)
             allowed = f"above {gap_here.min():.4g} m, where a sample touches"
             require(contact.force > 0.0, "approaches", f"{approach:.4g} m", allowed)
-            start, smooth = contact.pressure, half_space.solve(gap, load=contact.force)
+            start = contact.pressure
+            smooth = half_space.solve(gap, load=contact.force)
             found.append(_tangents(stuck, contact, smooth, sample))
         return found
 
     done = counted(in_order(pressed, heights), len(heights), "tangential states", progress)
     values = np.moveaxis(np.array(list(done)), 2, 0)
     load, cut_off, area, normal = np.moveaxis(values[..., :4], -1, 0)
-    counts, remedy = Counts(load[0].size, truncated=int(cut_off[0].sum())), "or end the approaches lower."
+    counts = Counts(load[0].size, truncated=int(cut_off[0].sum()))
+    remedy = "or end the approaches lower."
     warn_of_flaws(counts, "the states", "rtol", f"Enlarge the window, {remedy}")
     matrices = values[..., 4:8].reshape(*load.shape, 2, 2)
     return TractionStates(r, load[0], area, normal, matrices, values[..., 8:])

@@ -44,7 +44,8 @@ class Material:
     def __post_init__(self) -> None:
         positive(f"Young's modulus (Pa) of {self.name}", self.youngs_modulus)
         positive(f"density (kg/m^3) of {self.name}", self.density)
-        what, allowed = f"Poisson's ratio of {self.name}", "above -1, at most 0.5"
+        what = f"Poisson's ratio of {self.name}"
+        allowed = "above -1, at most 0.5"
         real(what, self.poisson_ratio, allowed, above=-1.0, at_most=0.5)
 
 

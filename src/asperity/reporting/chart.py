@@ -16,8 +16,12 @@ FREQUENCY, TIME = "frequency", "time"
 """Quantities by which axes are linked: a cursor on one stands on all."""
 WIDE = 9.6
 """Inches: a figure as wide as the page."""
-INK, MUTED, GRID = "#1c2126", "#5b6670", "#dfe3e7"
-BLUE, VERMILLION, GREEN = "#0067a5", "#c8500a", "#00805c"
+INK = "#1c2126"
+MUTED = "#5b6670"
+GRID = "#dfe3e7"
+BLUE = "#0067a5"
+VERMILLION = "#c8500a"
+GREEN = "#00805c"
 
 # The page replaces every colour of this table by a CSS variable, with a second value for dark screens.
 COLOURS = {

@@ -153,7 +153,8 @@ def _of_run(run: NamedRun, levels: Sequence[Entry], *, main: bool) -> xarray.Dat
 
     The `main` law stands under this name as well, where runs differ in it.
     """
-    tree, found = run.tree, dict[str, xarray.DataArray]()
+    tree = run.tree
+    found = dict[str, xarray.DataArray]()
 
     def add(name: str, values: xarray.DataArray, units: str, meaning: str) -> None:
         found[name] = values.reset_coords(drop=True).assign_attrs(units=units, long_name=meaning)
@@ -214,15 +215,18 @@ def _with_differences(table: xarray.Dataset, told: Mapping[str, Mapping[str, str
         for dim, (name, units, meaning) in axes.items()
     }
     for name, attrs in told.items():
-        values, dims = table[name].values, [axes[str(dim)][0] for dim in table[name].dims]
+        values = table[name].values
+        dims = [axes[str(dim)][0] for dim in table[name].dims]
         found[name] = _variable(dims, values, attrs["units"], attrs["long_name"])
-        less, how = values - values[:1], f"{attrs['long_name']}, less that of the first run"
+        less = values - values[:1]
+        how = f"{attrs['long_name']}, less that of the first run"
         if name in RATIOS:
             with np.errstate(divide="ignore", invalid="ignore"):
                 less = 20.0 * np.log10(values / values[:1])
             how = f"{attrs['long_name']}: 20 lg of the ratio to the first run"
         elif (level := name.removesuffix("_a")) in told and level != name:
-            by_band, bands = table[level].values, table["place"].values
+            by_band = table[level].values
+            bands = table["place"].values
             shared = np.isfinite(by_band) & np.isfinite(by_band[:1])
             own, first = (np.where(shared, each, np.nan) for each in (by_band, by_band[:1]))
             less = a_weighted_total(own, bands) - a_weighted_total(first, bands)
@@ -278,7 +282,8 @@ def working_filter(tree: xarray.DataTree) -> Curve | None:
     working = data.number(tree, contact.WORKING_APPROACH)
     if working is None or not data.present(tree, contact.FILTER, contact.APPROACH, contact.WAVENUMBER):
         return None
-    magnitude, wavenumber = data.values(tree, contact.FILTER), data.values(tree, contact.WAVENUMBER)
+    magnitude = data.values(tree, contact.FILTER)
+    wavenumber = data.values(tree, contact.WAVENUMBER)
     states = np.isfinite(magnitude).any(axis=1)
     approach = data.values(tree, contact.APPROACH)[states]
     at = np.array([np.interp(working, approach, column) for column in magnitude[states].T])

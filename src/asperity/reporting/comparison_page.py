@@ -49,7 +49,8 @@ def _rows_of(table: xarray.Dataset, name: str) -> Iterator[list[object]]:
     what = {"approach": "contact", "wavenumber": "filter", "band": "level", JUDGED_BAND.name: "velocity"}
     own = [dim for dim in held.dims if dim != "run"]
     place = next((str(dim) for dim in own if dim != "law"), "")
-    units, less_units = str(held.attrs["units"]), str((held if kept is None else kept).attrs["units"])
+    units = str(held.attrs["units"])
+    less_units = str((held if kept is None else kept).attrs["units"])
     for index in np.ndindex(*(held.sizes[dim] for dim in own)):
         at = dict(zip(own, index, strict=True))
         found = held.isel(at).values
@@ -91,8 +92,10 @@ def summary(of: ComparedRuns) -> str:
 
 def _level_words(of: ComparedRuns, name: str, run: int) -> str:
     """Range of the differences of a level over the bands that say something, and dB(A)."""
-    difference, title = of.table[f"{name}_difference"], of.levels[name]
-    change, without = difference[run, 0].values, difference.attrs.get(UNLIKE_RUNS, "")
+    difference = of.table[f"{name}_difference"]
+    title = of.levels[name]
+    change = difference[run, 0].values
+    without = difference.attrs.get(UNLIKE_RUNS, "")
     if without and not np.isfinite(change).any():
         return f"{title} not compared, for that of {without} is without its wheel"
     weighted = float(of.table[f"{name}_a_difference"][run, 0])
@@ -145,7 +148,8 @@ def _level(of: ComparedRuns, name: str) -> Iterator[Panel | str]:
 
     Of two runs the differences of all laws are drawn, in their looks; of more runs those of the first law.
     """
-    level, difference = of.table[name].values, of.table[f"{name}_difference"].values
+    level = of.table[name].values
+    difference = of.table[f"{name}_difference"].values
     band, runs, (main, *_) = of.table["band"].values, range(len(of.runs)), of.laws
     above = tuple(_of_run(of, r, band, level[r, 0]) for r in runs)
     bands = panels.band_axis(band[np.isfinite(level).any(axis=(0, 1))])
@@ -180,15 +184,18 @@ def _level(of: ComparedRuns, name: str) -> Iterator[Panel | str]:
 
 def _contacts(of: ComparedRuns) -> Iterator[Panel | str]:
     """Stiffness of all runs over the approach, and their filters at the working approach."""
-    table, lines = of.table, list[Line]()
+    table = of.table
+    lines = list[Line]()
     if "stiffness" in table:
-        approach, stiffness = table["approach"].values * 1e6, table["stiffness"].values
+        approach = table["approach"].values * 1e6
+        stiffness = table["stiffness"].values
         unit, symbol = (1e9, "GN/m") if np.nanmax(stiffness) > 2e9 else (1e6, "MN/m")
         working = table[contact.WORKING_APPROACH.name].values * 1e6
         for r, found in enumerate(stiffness):
             kept = np.isfinite(found)
             if kept.any():
-                line, at = _of_run(of, r, approach[kept], found[kept] / unit, marker=""), working[r : r + 1]
+                line = _of_run(of, r, approach[kept], found[kept] / unit, marker="")
+                at = working[r : r + 1]
                 point = Line(at, np.interp(at, line.x, line.y), colour=line.colour, width=0, marker="o")
                 lines += [line, point]
         up = Axis(f"contact stiffness k_c / ({symbol})", low=0.0)

@@ -46,11 +46,14 @@ def _outline(tree: DataTree, x: Numbers, y: Numbers) -> list[Line]:
 @figure("Pressure at the working load", Of(contact.PX, "x"), field(contact.PRESSURE, contact.PY, "p"))
 def contact_pressure(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """Pressure and gap at the working load, with Hertz's contact outlined."""
-    x, y, pressure = lines.at, data.values(tree, contact.PY), data.values(tree, contact.PRESSURE)
+    x = lines.at
+    y = data.values(tree, contact.PY)
+    pressure = data.values(tree, contact.PRESSURE)
     gap = np.maximum(data.values(tree, contact.GAP), 0.0)  # but for rounding it is
     height, symbol = data.length_unit(float(np.nanmax(gap)) or 1e-6)
     size, unit = (1e9, "GPa") if pressure.max() >= 2e9 else (1e6, "MPa")
-    loaded, outline = np.where(pressure > 0, pressure, np.nan) / size, _outline(tree, x, y)
+    loaded = np.where(pressure > 0, pressure, np.nan) / size
+    outline = _outline(tree, x, y)
     scale = (f"pressure / {unit}", 0.0, float(np.nanmax(pressure)) / size)
     above = map_panel(x, y, loaded, scale, *outline, colours="inferno_r", title="pressure", height=4.1)
     whole = np.array([-np.inf]), np.array([np.inf])
@@ -104,12 +107,14 @@ def contact_force(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     size, symbol = data.force_unit(float(np.nanmax(data.values(tree, contact.FORCE))))
     force = "rough, mean ± standard deviation" if rough else "smooth bodies (Hertz)"
     secant = "k_c = F/r, mean ± standard deviation" if rough else "F/r, smooth bodies (Hertz)"
-    at, datum = lines.at / MICRO, data.number(tree, contact.DATUM)
+    at = lines.at / MICRO
+    datum = data.number(tree, contact.DATUM)
     margin = 0.02 * (at.max() - at.min() or 1.0)
     state = None if datum is None else chart.Second("state r = δ + d₀ / µm", offset=datum / MICRO)
     ends = at.min() - margin, at.max() + margin
     axis = Axis("approach δ / µm (closing →)", *ends, second=state, linked="approach")
-    load, working = [], data.number(tree, contact.WORKING_APPROACH)
+    load = []
+    working = data.number(tree, contact.WORKING_APPROACH)
     if working is not None and lines.at.min() <= working <= lines.at.max():
         load = [chart.Rules(np.array([working / MICRO]), label="working load")]
     forces = _curve(lines, contact.FORCE, contact.FORCE_STD, size, force)
@@ -137,7 +142,8 @@ def contact_force(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
 
 def _curve(lines: Lines, mean: Entry, spread: Entry, size: float, label: str) -> list[Mark]:
     """Draw a curve, with dots where its states are few, and what it varies by."""
-    at, marks = lines.at / MICRO, list[Mark]()
+    at = lines.at / MICRO
+    marks = list[Mark]()
     for series in lines.of(mean):
         level = series.values / size
         for by in (each.values / size for each in lines.of(spread)):

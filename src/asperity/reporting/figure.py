@@ -74,7 +74,8 @@ class Of:
         """Take them from a result; none of an optional variable that it lacks."""
         if self.optional and not data.present(tree, self.entry):
             return
-        found, name = data.variable_of(tree, self.entry), self.name or self.entry.name
+        found = data.variable_of(tree, self.entry)
+        name = self.name or self.entry.name
         dims = [str(dim) for dim in found.dims[:-1]]
         apart = {dim for dim in dims if f"{{{dim}" in name + self.label and dim not in self.one}
         places = {dim: data.with_numbers(found, dim) for dim in dims}
@@ -87,7 +88,8 @@ class Of:
                 place = {dim: found[dim].values[n].item() for dim, n in at.items()}
                 words = place | {dim: each[at[dim]] for dim, each in called.items()}
                 told = {dim: place[dim] for dim in apart}
-                written, label = name.format(**words), (self.label or name).format(**words)
+                written = name.format(**words)
+                label = (self.label or name).format(**words)
                 yield Series(written, self.entry.units, numbers, self.entry, label, told, self.look)
 
 
@@ -113,7 +115,8 @@ class Lines:
 
         Of long lines, if asked, where each of so many stretches begins, and its lowest and highest number.
         """
-        first, lines = [] if self.x is None else [self.x], list(self.lines)
+        first = [] if self.x is None else [self.x]
+        lines = list(self.lines)
         if stretches:
             first = [replace(x, values=x.values[envelope(x.values, stretches)[0]]) for x in first]
             lines = [
@@ -191,7 +194,8 @@ class Figure:
 
     def collect(self, tree: DataTree) -> Lines:
         """Take its numbers from a result."""
-        rows, taken = self.rows(tree), [each for each in (self.over, *self.columns) if each]
+        rows = self.rows(tree)
+        taken = [each for each in (self.over, *self.columns) if each]
         found = [replace(one, values=one.values[rows]) for each in taken for one in each(tree)]
         return Lines(found[0], found[1:]) if self.over else Lines(None, found)
 

@@ -78,7 +78,8 @@ def fit_figure(found: Sequence[Compared], *, stated: bool) -> Iterator[Panel | s
 def _along(each: Compared) -> Axis:
     if each.is_banded and len(each.at) <= 40:
         return panels.band_axis(each.at)
-    low, high = float(each.at.min()), float(each.at.max())
+    low = float(each.at.min())
+    high = float(each.at.max())
     if "Hz" in each.axis and low > 0.0:
         return panels.frequency_axis(low, high)
     return Axis(each.axis.replace(" (", " / ").replace(")", ""), low, high)

@@ -12,7 +12,11 @@ from asperity.schema import contact, convergence, provenance, rolling
 from asperity.spectra import nominal_frequency
 from asperity.written_numbers import capital
 
-IN_RANGE, NOTE, WARNING, OUT, UNKNOWN = "in range", "note", "warning", "out of range", "not checked"
+IN_RANGE = "in range"
+NOTE = "note"
+WARNING = "warning"
+OUT = "out of range"
+UNKNOWN = "not checked"
 _LOOKS = {
     OUT: ("out", "■", "Out of range"),
     WARNING: ("warn", "▲", "To be read with care"),
@@ -95,7 +99,8 @@ def _expected(tree: DataTree) -> Iterator[Light]:
     main = next(iter(data.laws(tree, rolling.CONTACT_FORCE)), None)
     if expected := error_on_map(tree, main):
         error, value, found = expected
-        wanted, far = float(found["wanted"]), bool(found["off_map"])
+        wanted = float(found["wanted"])
+        far = bool(found["off_map"])
         state = IN_RANGE if error["high"] <= wanted else WARNING if error["error"] > wanted else NOTE
         quantity = f"expected distance of {main} from direct, rms over the one-third octaves"
         guess = ": a guess, off the map of law errors" if far else ""
@@ -105,16 +110,19 @@ def _expected(tree: DataTree) -> Iterator[Light]:
 
 def _settings(tree: DataTree) -> Iterator[Light]:
     """What finer settings changed."""
-    names, limit = setting_names(tree), f"up to {OFF:g} dB"
+    names = setting_names(tree)
+    limit = f"up to {OFF:g} dB"
     if not names:
         yield Light("change of levels by finer settings", "not known: run with --converge", limit, UNKNOWN)
     sizes = dict(zip(names, setting_numbers(tree, convergence.LARGEST_CHANGE).tolist(), strict=True))
     chance = sizes.pop(convergence.PATH_LENGTH, np.nan)  # no setting
     for name, size in sizes.items():
-        value, state = "not changed", UNKNOWN
+        value = "not changed"
+        state = UNKNOWN
         if np.isfinite(size):
             far = OUT if convergence.meaningless(size, chance) else WARNING
-            value, state = f"{size:.2f} dB", IN_RANGE if size <= OFF else far
+            value = f"{size:.2f} dB"
+            state = IN_RANGE if size <= OFF else far
         yield Light(f"change of levels by a finer setting: {name}", value, limit, state)
 
 
@@ -145,8 +153,10 @@ def force_answers(tree: DataTree) -> Answers:
     """Force of the main law at all contacts, and its losses of contact."""
     main = data.main_law(tree, rolling.CONTACT_FORCE)
     forces = data.of_contacts(tree, rolling.CONTACT_FORCE, main)
-    count, largest = len(forces), np.nanmax(forces, axis=1)
-    mean, rms = float(np.nanmean(forces)), float(np.sqrt(np.nanmean(np.nanvar(forces, axis=1))))
+    count = len(forces)
+    largest = np.nanmax(forces, axis=1)
+    mean = float(np.nanmean(forces))
+    rms = float(np.sqrt(np.nanmean(np.nanvar(forces, axis=1))))
     rms *= bool(np.ptp(forces, axis=1).any())  # of what does not vary, the mean is rounded
     top = data.engineering(float(largest.max()), "N") + _at_contact(int(largest.argmax()), count)
     share = (
@@ -171,10 +181,12 @@ def _loss(tree: DataTree, main: str) -> Iterator[HeadlineNumber]:
     worst = int(np.nanargmax(losses[0]))
     share, events, longest = (float(of_contacts[worst]) for of_contacts in losses)
     lost = "once" if events == 1 else f"{events:.0f} times"
-    value, told = data.in_percent(share), f"lost {lost}, longest {data.engineering(longest, 's')}"
+    value = data.in_percent(share)
+    told = f"lost {lost}, longest {data.engineering(longest, 's')}"
     told += _at_contact(worst, len(losses[0]))
     if data.law_entry(tree, main).may_pull:
-        value, told = "–", f"{main} cannot lose it: its force may pull"
+        value = "–"
+        told = f"{main} cannot lose it: its force may pull"
     elif not share:
         value, told = "0 %", "contact is never lost"
     yield HeadlineNumber("time without contact", value, told)

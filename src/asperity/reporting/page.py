@@ -164,12 +164,15 @@ def page(
     held = ([each for each in section.figures if each.name in ON_SHEET] for section in sections)
     on_sheet = [min(some, key=lambda f: ON_SHEET.index(f.name)) for some in held if some][:SUMMARY_FIGURES]
     shown = [PageSection("summary", "", on_sheet)] if summary else sections
-    checks, colours = headline.lights(tree), data.law_colours(tree)
-    kind, parameters = data.stated(tree, provenance.KIND), data.json_list(tree, provenance.PARAMETERS)
+    checks = headline.lights(tree)
+    colours = data.law_colours(tree)
+    kind = data.stated(tree, provenance.KIND)
+    parameters = data.json_list(tree, provenance.PARAMETERS)
     changed = [parameter for parameter in parameters if not parameter.get("is_default", True)]
     differing = [f"{each.get('key', '')} = {each.get('value', '')}" for each in changed[:CHANGES]]
     differing += [f"and {len(changed) - CHANGES} more"] if len(changed) > CHANGES else []
-    verdict, force = str(data.stated(tree, provenance.VERDICT) or ""), rolling.CONTACT_FORCE
+    verdict = str(data.stated(tree, provenance.VERDICT) or "")
+    force = rolling.CONTACT_FORCE
     seed = data.stated(tree, provenance.SEED)
     button = (files("asperity.reporting") / "summary.js").read_text(encoding="utf-8")
     blocks = [block for section in shown for block in section.blocks]

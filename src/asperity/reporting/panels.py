@@ -29,7 +29,8 @@ def band_axis(
 ) -> Axis:
     """Logarithmic axis with every one-third octave named, of frequencies unless it has another label."""
     ticks = tuple((band, name(band)) for band in bands.tolist())
-    low, high = float(bands[0] / EDGE), float(bands[-1] * EDGE)
+    low = float(bands[0] / EDGE)
+    high = float(bands[-1] * EDGE)
     linked = linked if label else chart.FREQUENCY
     return Axis(label or "one-third octave band / Hz", low, high, log=True, ticks=ticks, linked=linked)
 
@@ -52,7 +53,8 @@ def log_axis(label: str, found: Sequence[Numbers], lowest: float = 0.0) -> Axis:
     positive = np.concatenate([each[each > 0] for each in found])
     if positive.size == 0:
         return Axis(label, 1.0, 10.0, log=True)
-    low, high = max(positive.min(), min(lowest, positive.max())), positive.max()
+    low = max(positive.min(), min(lowest, positive.max()))
+    high = positive.max()
     steps = np.outer(10.0 ** np.arange(np.floor(np.log10(low)), np.log10(high) + 1), [1, 2, 5, 10]).ravel()
     return Axis(label, float(steps[steps <= low].max()), float(steps[steps >= high].min()), log=True)
 
@@ -60,7 +62,8 @@ def log_axis(label: str, found: Sequence[Numbers], lowest: float = 0.0) -> Axis:
 def words_axis(words: Sequence[str], label: str = "", *, margin: float = 0.5, down: bool = False) -> Axis:
     """Axis with a place, 0, 1, 2, …, for each word, the first at the bottom, or at the top."""
     ticks = tuple((float(n), word) for n, word in enumerate(words))
-    low, high = -margin, len(words) - 1 + margin
+    low = -margin
+    high = len(words) - 1 + margin
     return Axis(label, *((high, low) if down else (low, high)), ticks=ticks)
 
 
@@ -115,7 +118,8 @@ def shaded_words(tree: DataTree, product: Entry = spectra.BAND_TIME_PRODUCT) -> 
     of_force = product is spectra.BAND_TIME_PRODUCT
     if (of_force and not data.present(tree, spectra.BAND)) or not data.doubtful(tree, product).any():
         return ""
-    start, low = "", -10.0 * np.log10(1.0 - MOST_START)
+    start = ""
+    low = -10.0 * np.log10(1.0 - MOST_START)
     if of_force and data.present(tree, spectra.START_SHARE):
         start = f", or resonances have not built up yet, and it is low by more than {low:.0f} dB"
     return (
@@ -187,7 +191,8 @@ def narrow_levels(
     kept = (lines.at >= low) & (lines.at <= high) & (lines.at > 0)
     if not kept.any():
         return np.array([low, high]), [replace(s, values=np.full(2, np.nan)) for s in shown]
-    at, found = lines.at[kept], list(shown)
+    at = lines.at[kept]
+    found = list(shown)
     levels = [chart.decibels(chart.smooth_on_log_axis(at, s.values[kept])[1], reference) for s in found]
     smooth = chart.smooth_on_log_axis(at, at)[0]
     return smooth, [replace(s, values=level) for s, level in zip(found, levels, strict=True)]
@@ -256,6 +261,7 @@ def main_limits(lines: Sequence[figure.Series], pulling: Collection[str]) -> tup
     bottom = min(max(low - room, least) for least, _ in ends)
     top = max(min(high + room, most) for _, most in ends)
     if low - room <= 0.0 <= high + room:
-        bottom, top = min(bottom, 0.0), max(top, 0.0)
+        bottom = min(bottom, 0.0)
+        top = max(top, 0.0)
     margin = 0.04 * (top - bottom) or 1e-12
     return bottom - margin, top + margin

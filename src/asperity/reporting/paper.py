@@ -190,7 +190,8 @@ def _draw_mark(axes: Axes, mark: chart.Mark, width: float, order: float) -> None
             _draw_boxes(axes, mark, look)
         case chart.Rules():  # across the panel, or short ones at its edge
             look |= {"linestyle": _style(mark.dashes, mark.width), "linewidth": mark.width}
-            along_x, end = mark.along == "x", 0.04 if mark.short else 1.0
+            along_x = mark.along == "x"
+            end = 0.04 if mark.short else 1.0
             transform = axes.get_xaxis_transform() if along_x else axes.get_yaxis_transform()
             lines = axes.vlines if along_x else axes.hlines
             lines(mark.at, 0.0, end, color=mark.colour, transform=transform, **look)
@@ -210,7 +211,10 @@ def _style(dashes: Sequence[float], width: float) -> Any:
 
 def _draw_boxes(axes: Axes, mark: chart.Boxes, look: dict[str, Any]) -> None:
     """Draw rectangles, the endless ones behind the grid."""
-    left, right, low, high = mark.left, mark.right, mark.low, mark.high
+    left = mark.left
+    right = mark.right
+    low = mark.low
+    high = mark.high
     if _is_endless(mark):
         look["zorder"] = 0.2
         x, y = axes.get_xlim(), axes.get_ylim()
@@ -226,7 +230,8 @@ def _draw_boxes(axes: Axes, mark: chart.Boxes, look: dict[str, Any]) -> None:
 
 def _write_note(axes: Axes, note: chart.Note) -> None:
     """Write words at a place, a little beside it; what lies outside the panel is left out."""
-    x, y = axes.get_xlim(), axes.get_ylim()
+    x = axes.get_xlim()
+    y = axes.get_ylim()
     inside = (note.x_share or min(x) <= note.x <= max(x)) and (note.y_share or min(y) <= note.y <= max(y))
     if not inside:
         return
@@ -251,7 +256,8 @@ def _draw_field(axes: Axes, mark: chart.Field, width: float) -> None:
     look: dict[str, Any] = {"cmap": mark.colours, "vmin": mark.low, "vmax": mark.high, "zorder": 0.3}
     extent = (*mark.x, *mark.y)
     image = axes.imshow(mark.values.T, origin="lower", extent=extent, aspect="auto", **look)
-    below, above = bool(np.nanmin(mark.values) < mark.low), bool(np.nanmax(mark.values) > mark.high)
+    below = bool(np.nanmin(mark.values) < mark.low)
+    above = bool(np.nanmax(mark.values) > mark.high)
     extend = {(True, True): "both", (True, False): "min", (False, True): "max"}.get((below, above), "neither")
     beside = axes.inset_axes((1.0 + 0.1 / width, 0.0, 0.13 / width, 1.0))
     axes.figure.colorbar(image, cax=beside, label=mark.label, extend=extend)

@@ -53,7 +53,8 @@ def _kept(numbers: Numbers, linear: bool, levels: int) -> tuple[dict[str, float]
         return steps, b""
     finite = numbers[np.isfinite(numbers)]
     if linear and numbers.size > LONG and finite.size and not np.isinf(numbers).any():
-        low, size = float(finite.min()), float(np.ptp(finite)) / levels
+        low = float(finite.min())
+        size = float(np.ptp(finite)) / levels
         return {"low": low, "size": size}, _levels((numbers - low) / (size or 1.0))
     with np.errstate(over="ignore"):
         single = numbers.astype("<f4")
@@ -64,7 +65,8 @@ def _steps(numbers: Numbers) -> dict[str, float] | None:
     """Start and step of numbers that are equally spaced."""
     if numbers.size < 3 or not np.isfinite(numbers).all():
         return None
-    start, step = float(numbers[0]), float(numbers[-1] - numbers[0]) / (numbers.size - 1)
+    start = float(numbers[0])
+    step = float(numbers[-1] - numbers[0]) / (numbers.size - 1)
     off = np.abs(start + step * np.arange(numbers.size) - numbers).max()
     return {"start": start, "step": step} if off <= 1e-6 * abs(step) else None
 
@@ -95,7 +97,8 @@ def charts_json(charts: Mapping[str, Chart], colours: Mapping[str, str], unticke
     `colours` are those of the page, in the order of its CSS variables; `unticked` are the laws that are not
     shown until they are ticked.
     """
-    arrays, look = Arrays(), list(colours)
+    arrays = Arrays()
+    look = list(colours)
     told = {
         name: {"panels": [_panel(panel, arrays, look) for panel in _thinned(drawn).panels]}
         for name, drawn in charts.items()

@@ -84,7 +84,8 @@ def radiated(force: Array, step: float, centre: Array, level: Array) -> Array:
     Time step in s; centres (b,), Hz, and levels (b,), dB re 1 pW, of one-third octaves.
     """
     n = len(force)
-    spectrum, frequency = rfft(force), rfftfreq(n, step)
+    spectrum = rfft(force)
+    frequency = rfftfreq(n, step)
     density = 2.0 * np.abs(spectrum) ** 2 * step / n
     held = band_energies(frequency, density, centre / HALF_BAND, centre * HALF_BAND)
     gain = np.zeros(len(frequency))
@@ -217,7 +218,8 @@ def sounds_of(tree: DataTree, what: str | None = None) -> list[Sound]:
             for dim in places
         )
         samples = at_rate(one.values.astype(float), step)
-        law, unit = str(one[LAW.name].item()), str(values.attrs["units"])
+        law = str(one[LAW.name].item())
+        unit = str(values.attrs["units"])
         sounds.append(Sound(name, law, ", ".join(where), unit, samples))
     return sounds
 

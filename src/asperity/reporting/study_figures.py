@@ -46,7 +46,9 @@ def ensemble_figure(bands: xarray.Dataset, looks: Looks) -> Iterator[Panel | str
     others = [dim for dim in bands[FORCE_LEVEL.name].dims if dim not in (LAW.name, BAND.name)]
     for place in list(product(*(range(bands.sizes[dim]) for dim in others)))[:MOST_PANELS]:
         here = bands.isel(dict(zip(others, place, strict=True)))
-        band, marks, ends = here[BAND.name].values, _shades(here), []
+        band = here[BAND.name].values
+        marks = _shades(here)
+        ends = []
         for law in _laws(here):
             of_law = here.sel({LAW.name: law})
             mean, low, high = (of_law[f"{FORCE_LEVEL.name}{end}"].values for end in ("", "_low", "_high"))
@@ -129,7 +131,8 @@ def key_figures(
 
 def _told_apart(table: xarray.Dataset, name: str, key: str) -> str:
     """What the lines of a quantity over a key stand for, in a word."""
-    held, others = table[name], _others(table, key)
+    held = table[name]
+    others = _others(table, key)
     own = [str(dim) for dim in held.dims if dim not in (key, *others, LAW.name, *PLACES)]
     if others:
         return "other keys"
@@ -149,7 +152,8 @@ def key_figure(
     drawn = [name for name in names if name in mean and _says_something(mean[name])][:MOST_PANELS]
     for n, name in enumerate(drawn):
         yield replace(_panel(mean, scatter, name, key, looks), beside=n % 2 == 1)
-    told, others = [str(mean[key].attrs["long_name"])], _others(mean, key)
+    told = [str(mean[key].attrs["long_name"])]
+    others = _others(mean, key)
     if scatter is not None:
         told.append("mean ± standard deviation over the seeds")
     if others:
@@ -163,7 +167,8 @@ def ends_in_words(table: xarray.Dataset, names: Sequence[str]) -> str:
     if not name:
         return ""
     keys = [key for key in json.loads(table.attrs["sweep"]) if key in table.dims]
-    held, told = table[name], [str(table[name].attrs["long_name"]).partition(":")[0].partition(",")[0]]
+    held = table[name]
+    told = [str(table[name].attrs["long_name"]).partition(":")[0].partition(",")[0]]
     if LAW.name in held.dims:
         held = held.sel({LAW.name: _main(table)})
         told.append(_main(table))
@@ -232,7 +237,8 @@ def _lines(
     Of what is told apart by other words, as what radiates, a line for each of them, or where other keys are
     swept the largest of them.
     """
-    held, others = table[name], _others(table, key)
+    held = table[name]
+    others = _others(table, key)
     law = {LAW.name: _main(table)} if LAW.name in held.dims else {}
     own = [str(dim) for dim in held.dims if dim not in (key, *others, LAW.name, *PLACES)]
     if others:
@@ -280,9 +286,11 @@ def _places(key: xarray.DataArray) -> Numbers:
 def _key_axis(key: xarray.DataArray) -> Axis:
     if key.dtype.kind == "U":
         return panels.words_axis(data.typed_values(key), str(key.name))
-    x, unit = _places(key), data.typed_unit(key)
+    x = _places(key)
+    unit = data.typed_unit(key)
     label = f"{key.name} / {unit}" if unit not in ("", "1") else str(key.name)
-    low, high = float(x.min()), float(x.max())
+    low = float(x.min())
+    high = float(x.max())
     if low > 0 and high / low > SPREAD:
         room = (high / low) ** 0.04
         return Axis(label, low / room, high * room, log=True, linked=str(key.name))
@@ -292,10 +300,12 @@ def _key_axis(key: xarray.DataArray) -> Axis:
 
 def _bands(table: xarray.Dataset, key: str) -> Panel:
     """Force level of the first law in each band, a line for each value of the key."""
-    count, others = table.sizes[key], _others(table, key)
+    count = table.sizes[key]
+    others = _others(table, key)
     shown = chart.spread(count, MOST_LINES)
     here = table.isel(dict.fromkeys(others, 0)).sel({LAW.name: _main(table)})
-    band, words = table[BAND.name].values, data.typed_words(table[key])
+    band = table[BAND.name].values
+    words = data.typed_words(table[key])
     marks = _shades(here)
     for at, look in zip(shown, sequence_styles(len(shown)), strict=True):
         level = here[FORCE_LEVEL.name].isel({key: at}).values

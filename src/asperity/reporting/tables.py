@@ -116,11 +116,13 @@ def in_digits(count: int) -> Writer:
 
 def numbers_table(columns: Mapping[str, chart.Numbers], foremost: Sequence[str] = ()) -> ReportTable:
     """Numbers of a figure by the heads of its CSV file; of many the first, the `foremost`, and some."""
-    count, heads = len(next(iter(columns.values()))), list(columns)
+    count = len(next(iter(columns.values())))
+    heads = list(columns)
     kept = list(dict.fromkeys([heads[0], *(head for head in foremost if head in columns)]))[:COLUMNS]
     others = [head for head in heads if head not in kept]
     kept += [others[n] for n in chart.spread(len(others), COLUMNS - len(kept))] if len(kept) < COLUMNS else []
-    rows, named = chart.spread(count, ROWS), sorted(kept, key=heads.index)
+    rows = chart.spread(count, ROWS)
+    named = sorted(kept, key=heads.index)
     shown = {head: _unrounded(columns[head])[rows] for head in named}
     counts = {"rows": (len(rows), count), "columns": (len(named), len(columns))}
     parts = [f"{some} of {every} {what}" for what, (some, every) in counts.items() if some < every]
@@ -261,7 +263,8 @@ def loss_table(tree: DataTree) -> ReportTable:
         for entry, (head, write) in LOSSES.items()
     }
     pulling = [law for law in laws if law in data.pulling(tree)]
-    verb, note = "pulls" if len(pulling) == 1 else "pull", ""
+    verb = "pulls" if len(pulling) == 1 else "pull"
+    note = ""
     if pulling:
         note = f"{' and '.join(pulling)} cannot lose contact, but {verb} where others let go."
     note = " ".join(filter(None, [note, data.of_first_contact(tree)]))
@@ -299,7 +302,8 @@ def settings_table(tree: DataTree) -> ReportTable | None:
         return None
     changed, limits = (data.words(tree, entry) for entry in (convergence.CHANGE, convergence.LIMIT))
     size, band, stiffness = (setting_numbers(tree, entry) for entry in _CHANGES)
-    motion, moved = _largest_motion(tree), data.stored_variable(tree, convergence.MOTION_LEVEL_CHANGE)
+    motion = _largest_motion(tree)
+    moved = data.stored_variable(tree, convergence.MOTION_LEVEL_CHANGE)
     change = [f"not changed: {why}" if why else how for how, why in zip(changed, limits, strict=True)]
     columns = {
         "setting": text_cells(names),
@@ -401,7 +405,8 @@ def _chance(tree: DataTree) -> Iterator[Known]:
     """Standard deviation of a band level by chance, and how far it is low from the start of the record."""
     if not data.present(tree, spectra.BAND, spectra.BAND_TIME_PRODUCT, spectra.LEVEL_DEVIATION):
         return
-    band, deviation = data.values(tree, spectra.BAND), data.values(tree, spectra.LEVEL_DEVIATION)
+    band = data.values(tree, spectra.BAND)
+    deviation = data.values(tree, spectra.LEVEL_DEVIATION)
     shown = np.flatnonzero((band > LOW) & (band < HIGH) & ~data.doubtful(tree, spectra.BAND_TIME_PRODUCT))
     source = "chance: one record of this length"
     if shown.size:

@@ -75,9 +75,11 @@ def distribution(heights: Numbers) -> tuple[Numbers, Numbers]:
     """Distribution of heights, m: edges of bins, and density in them, 1/m; missing points are left out."""
     finite = heights[np.isfinite(heights)]
     bins = int(np.clip(2 * len(finite) ** (1 / 3), 10, 80))  # Rice's rule
-    low, high = finite.min(), finite.max()
+    low = finite.min()
+    high = finite.max()
     if low == high:
-        low, high = low - 0.5e-9, high + 0.5e-9
+        low = low - 0.5e-9
+        high = high + 0.5e-9
     density, edges = np.histogram(finite, bins=bins, range=(low, high), density=True)
     return edges, density
 
@@ -93,7 +95,8 @@ def height_histogram(
         at = np.repeat(edges / size, 2)[1:-1]
         steps.append(Line(at, np.where(often > 0, often, np.nan), name, *look, width=1.4))
     edges, density = next(iter(named.values()))
-    middle, share = (edges[1:] + edges[:-1]) / 2, density * np.diff(edges)
+    middle = (edges[1:] + edges[:-1]) / 2
+    share = density * np.diff(edges)
     mean = float(np.sum(middle * share))
     spread = float(np.sqrt(np.sum((middle - mean) ** 2 * share))) or float(np.ptp(edges))
     z = np.linspace(edges[0], edges[-1], 200)
@@ -110,7 +113,8 @@ def height_histogram(
 def psd_panel(spectra: Sequence[Line], *marks: Mark, **place: Any) -> Panel:
     """Power spectral densities of heights in m³ over wavenumbers."""
     levels = np.concatenate([line.y for line in spectra])
-    low, high = max(levels.min() / 2, levels.max() * 1e-8), levels.max() * 4
+    low = max(levels.min() / 2, levels.max() * 1e-8)
+    high = levels.max() * 4
     along = panels.wavenumber_axis(min(line.x[0] for line in spectra), max(line.x[-1] for line in spectra))
     density = Axis("one-sided PSD / m³", float(low), float(high), log=True)
     return Panel(along, density, (*marks, *spectra), **place)
@@ -133,7 +137,9 @@ def _between(tree: DataTree) -> str:
 @figure("Texture of the samples", Of(contact.MAP_X, "x"), field(contact.SAMPLE_HEIGHTS, contact.MAP_Y, "z"))
 def texture_sample(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """Map of the first sample, and how its heights are distributed."""
-    x, y, heights = lines.at, data.values(tree, contact.MAP_Y), data.values(tree, contact.SAMPLE_HEIGHTS)
+    x = lines.at
+    y = data.values(tree, contact.MAP_Y)
+    heights = data.values(tree, contact.SAMPLE_HEIGHTS)
     if not np.nanmax(np.abs(heights)) > 0:
         return
     slender = bool(np.ptp(x) > SLENDER * np.ptp(y))  # then the heights stand below the map
@@ -160,7 +166,8 @@ def texture_path(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
         title = f"a piece of the path, seen from above (y stretched){_between(tree)}"
         yield height_map(*strip, title=title, equal=False, height=1.9)
         above = ", and the piece seen from above"
-    distance, line = lines.at, lines.lines[0].values
+    distance = lines.at
+    line = lines.lines[0].values
     along, along_symbol = length_unit(np.ptp(distance))
     size, symbol = length_unit(float(np.nanmax(np.abs(line))) or 1e-9)
     x = Axis(f"distance / {along_symbol}", float(distance[0]) / along, float(distance[-1]) / along)
@@ -190,7 +197,8 @@ def texture_psd(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
         return
     marks: list[Mark] = []
     if (radius := data.number(tree, contact.HERTZ_RADIUS) or 0.0) > 0.0:
-        at, length = 1 / (2 * radius), data.engineering(2 * radius, "m")
+        at = 1 / (2 * radius)
+        length = data.engineering(2 * radius, "m")
         note = chart.Note(f" length of the contact, 2a = {length}", at, 0.95, y_share=True)
         marks = [chart.Rules(np.array([at]), colour=INK), note]
     yield psd_panel(drawn, *marks, height=3.9)
@@ -218,7 +226,8 @@ def running_in(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     lowering = before - after
     if not (lowering > 0).any():
         return
-    radius, count = data.number(tree, contact.HERTZ_RADIUS), len(lines.at)
+    radius = data.number(tree, contact.HERTZ_RADIUS)
+    count = len(lines.at)
     if radius:
         count = round(2 * STRETCH * radius / (lines.at[1] - lines.at[0]))
     first = int(np.clip(np.argmax(lowering) - count // 2, 0, max(len(lines.at) - count, 0)))
@@ -250,7 +259,8 @@ def surface_chart(heights: Numbers, spacing: tuple[float, float], spectra: Named
     """
     heights = np.asarray(heights, dtype=np.float64)
     length = np.asarray(heights.shape, dtype=np.float64) * spacing
-    slender, equal = bool(length[0] > SLENDER * length[1]), bool(max(length) <= 12 * min(length))
+    slender = bool(length[0] > SLENDER * length[1])
+    equal = bool(max(length) <= 12 * min(length))
     x, y = (step * np.arange(n, dtype=np.float64) for n, step in zip(heights.shape, spacing, strict=True))
     above = height_map(x, y, heights, equal=equal, height=1.9 if slender else 4.2, share=1.25)
     return _with_statistics(above, heights, spectra, None, beside=not slender)
@@ -276,7 +286,8 @@ def _with_statistics(
     above: Panel, heights: Numbers, spectra: NamedSpectra, octaves: ThirdOctaves | None, *, beside: bool
 ) -> Chart:
     """What heights look like, and how often each occurs, beside it or below, and their spectra."""
-    unit, named = height_scale(heights)[:2], {"heights": distribution(heights)}
+    unit = height_scale(heights)[:2]
+    named = {"heights": distribution(heights)}
     histogram = height_histogram(named, unit, height=above.height if beside else 2.7, beside=beside)
     ratio = _ratio_panel(heights, unit, beside=not beside, height=3.2 if beside else 2.7)
     return Chart((above, histogram, ratio, *_spectra_panels(spectra, octaves, beside=beside)))
@@ -331,7 +342,8 @@ def _lines_panel(lines: Sequence[Numbers], spacing: float) -> Panel:
     marks: list[Mark] = []
     for row, (line, (colour, _)) in enumerate(zip(lines, cycle(LOOKS), strict=False)):
         starts, low, high = chart.envelope(line, STRETCHES)
-        at, down = np.asarray(starts * spacing / along), row * reach
+        at = np.asarray(starts * spacing / along)
+        down = row * reach
         marks.append(chart.Area(at, low / size - down, high / size - down, colour=colour, opacity=1.0))
     tall = 0.45 * reach  # cut down to a round length
     decade = 10.0 ** np.floor(np.log10(tall))

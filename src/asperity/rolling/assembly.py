@@ -88,7 +88,9 @@ def system_of(
 
     Scales of the contact forces (n,), N, time step, s, speed, m/s, constant forces on the structure (s,).
     """
-    b, n, channels = len(bodies), len(loads), ground.channels
+    b = len(bodies)
+    n = len(loads)
+    channels = ground.channels
     of = np.repeat(np.arange(b), [len(body.places) for body in bodies])
     frequencies = steps.padded([2.0 * np.pi * body.natural_frequencies for body in bodies])
     natural = np.concatenate([ground.natural, frequencies.ravel()])
@@ -174,7 +176,8 @@ def at_rest(
     are exact to `relative` of the loads. A `ComputationError` says that nothing is at rest.
     """
     square, vectors = np.linalg.eigh(compliance)
-    n, coordinates = len(displaced), sum(len(body.mass) for body in bodies)
+    n = len(displaced)
+    coordinates = sum(len(body.mass) for body in bodies)
     shapes = np.hstack([block_diag(*(body.contacts for body in bodies)), vectors * np.sqrt(square.clip(0.0))])
     matrix = block_diag(*(body.stiffness for body in bodies), np.eye(n))
     pressing = np.concatenate([*(body.pressing for body in bodies), np.zeros(n)])
@@ -216,7 +219,8 @@ def equilibrium(
         if np.all(np.abs(firm * closer) <= relative * scale + firm * rounding):
             return x + move, force + firm * closer, approach + closer, stiffness
         move *= min(1.0, most / float(np.abs(closer).max()))
-        most, slope = min(2.0 * most, LARGEST_MOVE), float(gradient @ move)
+        most = min(2.0 * most, LARGEST_MOVE)
+        slope = float(gradient @ move)
         for _ in range(60):
             approach, force, stiffness, gradient = state(x + move)
             if float(gradient @ move) <= 0.5 * abs(slope):
@@ -279,12 +283,16 @@ def start_at_rest(
     static ones: what is left to ring is less by (k v/ω)² than that of a mode of wavenumber k. A force that is
     entering on a support has just come onto a structure at rest; modes that nothing holds are at rest, too.
     """
-    n, s, shapes = len(system.loads), len(ground.natural), shapes_at_contacts(ground, system)
+    n = len(system.loads)
+    s = len(ground.natural)
+    shapes = shapes_at_contacts(ground, system)
     held = system.stiffness > 0.0
     softness = np.divide(1.0, system.stiffness, out=np.zeros(len(held)), where=held)
     compliance = ground.yields + (shapes * softness) @ shapes.T + np.diag(system.softening)
     laws, relative = evaluations(prepared)
-    force, displaced, rates = np.concatenate([body.static_loads for body in bodies]), np.zeros(n), np.zeros(n)
+    force = np.concatenate([body.static_loads for body in bodies])
+    displaced = np.zeros(n)
+    rates = np.zeros(n)
     motion = at_zero(system)
     for _ in range(LOADINGS if ground.memory else 1):
         if ground.memory:
@@ -302,9 +310,11 @@ def start_at_rest(
     motion.velocity[:s] = system.speed * (moving @ ground.slopes) * softness[:s]
     rates = rates + ground.shapes @ motion.velocity[:s]
     rates += system.speed * (ground.slopes @ motion.displacement[:s])
-    d, first = system.core_shapes.shape[1], 0
+    d = system.core_shapes.shape[1]
+    first = 0
     for index, body in enumerate(bodies):
-        own, count = rates[system.body == index], len(body.mass)
+        own = rates[system.body == index]
+        count = len(body.mass)
         motion.core[index, :count] = coordinates[first : first + count]
         motion.core[index, d : d + count] = np.linalg.lstsq(body.contacts, -own, rcond=None)[0]
         first += count
@@ -321,7 +331,8 @@ def _on_support(ground: Ground) -> NDArray[np.bool_]:
 
 def _rolled_up(system: System, motion: Motion, force: Array, steps: int) -> tuple[Array, Array]:
     """Let constant forces roll on a rail; its displacements under the contacts, m, and their rates, m/s."""
-    before, channels = np.zeros(len(force)), system.channels
+    before = np.zeros(len(force))
+    channels = system.channels
     preload_channels(channels, motion, force, steps, before)
     rates = (motion.rail_ahead - before) / system.time_step
     np.add.at(motion.rail_ahead, channels.receiver, motion.rail_now * force[channels.source])
@@ -330,7 +341,9 @@ def _rolled_up(system: System, motion: Motion, force: Array, steps: int) -> tupl
 
 def at_zero(system: System) -> Motion:
     """A state of all zeros."""
-    m, n, p = len(system.stiffness), len(system.loads), len(system.channels.source)
+    m = len(system.stiffness)
+    n = len(system.loads)
+    p = len(system.channels.source)
     shapes: dict[str, Any] = dict.fromkeys(("displacement", "velocity", "push", "ahead"), m)
     shapes |= dict.fromkeys(("elastic", "rail_ahead", "trial", "compliance", "rate", "climb"), n)
     shapes |= dict.fromkeys(("core", "core_ahead"), system.core_pressed.shape)

@@ -233,7 +233,8 @@ class _Turning:
         done = np.concatenate([[0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1])) * self.time_step])
         self._cage = done - done[round(self.settling / self.time_step) + 1]
         self._spin = TURN * pure.spin
-        mass, middle = self.bearing.ball_mass, 0.5 * self.bearing.pitch_diameter
+        mass = self.bearing.ball_mass
+        middle = 0.5 * self.bearing.pitch_diameter
         self.centrifugal_force = mass * middle * (TURN * pure.cage) ** 2 * math.cos(self.contact_angle)
 
     def _time(self, first: int, stop: int) -> Array:
@@ -267,7 +268,8 @@ class _Turning:
 
     def usual_load(self, radial: float, axial: float) -> float:
         """Contact force by which tolerances are measured, N: that of the ball that carries most, about."""
-        sine, overlap = math.sin(self.contact_angle), max(-self.bearing.apart(self.contact_angle), 0.0)
+        sine = math.sin(self.contact_angle)
+        overlap = max(-self.bearing.apart(self.contact_angle), 0.0)
         shared = (5.0 * radial + (axial / sine if sine else 0.0)) / self.bearing.balls
         return shared + float(self.bearing.series_stiffness * overlap**1.5)
 
@@ -279,10 +281,12 @@ class _Turning:
         centrifugal: bool,
     ) -> Mechanism:
         """Balls outwards along the normal, first on the inner ring, then on the outer one."""
-        of, bending = self.bearing, self.rings.bending
+        of = self.bearing
+        bending = self.rings.bending
         allowed = f"{of.balls}, one line for each ball, or none"
         require(len(ball_heights) in (0, of.balls), "heights of the balls", len(ball_heights), allowed)
-        none, both = np.zeros((1, 1)), np.array([[1.0], [-1.0]])
+        none = np.zeros((1, 1))
+        both = np.array([[1.0], [-1.0]])
         pressing = np.array([-(self.centrifugal_force if centrifugal else 0.0)])
         ball = Body(np.array([[of.ball_mass]]), none, none, both, pressing, np.zeros(2))
         edges = []
@@ -293,9 +297,11 @@ class _Turning:
                     sides.append(Side(bending[ring][0], self.azimuth(j, ring), sign))
                 apart = 0.0 if ring else of.apart(self.contact_angle)
                 heights = _heights(ball_heights[j] if ball_heights else None, self.spot(ring), -apart)
-                law, along = laws[ring], self.on_raceway(j, ring)
+                law = laws[ring]
+                along = self.on_raceway(j, ring)
                 if isinstance(law, Sequence):
-                    law, along = law[j], self.on_both(j, ring)
+                    law = law[j]
+                    along = self.on_both(j, ring)
                 edges.append(Edge(law, along, tuple(sides), heights))
         return Mechanism(self.rings.structures, [ball] * of.balls, edges)
 
@@ -320,7 +326,8 @@ class _Turning:
         """Press the rings together, with springs that are free of force where they then are."""
         inner, outer = self.rings.inner, self.rings.outer
         pressed = [np.zeros(len(each.natural_frequencies)) for each in mechanism.structures]
-        pressed[INNER], pressed[OUTER] = inner.pressed(*loads), -outer.pressed(*loads)
+        pressed[INNER] = inner.pressed(*loads)
+        pressed[OUTER] = -outer.pressed(*loads)
         load = self.usual_load(*loads)
         require(load > 0.0, "load", "none", "a load, or a preload")
         held = np.maximum(inner.frequencies, outer.frequencies)

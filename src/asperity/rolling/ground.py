@@ -95,7 +95,8 @@ def _modes(over: Modal | None, path: Path, sensors: Array) -> Ground:
     natural, ratios, n = np.zeros(0), np.zeros(0), len(path.positions)
     if over is not None:
         _refuse_to_leave(over, path)
-        natural, ratios = 2.0 * np.pi * over.natural_frequencies, over.damping_ratios
+        natural = 2.0 * np.pi * over.natural_frequencies
+        ratios = over.damping_ratios
     elif sensors.size:
         raise InputError("sensors", f"{sensors.size} on a rigid plane", "none: it does not move")
 
@@ -112,13 +113,15 @@ def _modes(over: Modal | None, path: Path, sensors: Array) -> Ground:
     followed = frequencies[frequencies <= HIGHEST]  # others are meant to be static
     limit = "the highest mode of the structure", float(followed.max(initial=0.0)), PER_MODE
     channels = no_channels(n)
-    under, seen = shapes(path.starts), shapes(sensors)[0]
+    under = shapes(path.starts)
+    seen = shapes(sensors)[0]
     return Ground(natural, ratios, *under, seen, channels, softest, least, least, limit, np.zeros((n, n)))
 
 
 def no_channels(n: int) -> Channels:
     """Channels of a rail that is not there, for n contacts."""
-    none, first = np.zeros(0, dtype=np.int64), np.zeros(n + 1, dtype=np.int64)
+    none = np.zeros(0, dtype=np.int64)
+    first = np.zeros(n + 1, dtype=np.int64)
     decay, residue, now, scattered = map(np.zeros, ((0, 0), (0, 1, 0), (0, 1), (0, 1, 1)))
     kernels = decay, residue, now, scattered, np.zeros(0, dtype=bool)
     return Channels(none, none, none, first, np.zeros(n), 0.0, *kernels)
@@ -139,7 +142,8 @@ def _refuse_to_leave(over: Modal, path: Path) -> None:
 
 def _rail(rail: RailBetween, path: Path, sensors: Array) -> Ground:
     """A rail, by poles or scattered, between contacts at fixed distances."""
-    kernel, n = rail.kernel, len(path.positions)
+    kernel = rail.kernel
+    n = len(path.positions)
     given, made = (path.speed, path.time_step), (kernel.speed, kernel.time_step)
     if not np.allclose(given, made, rtol=1e-9, atol=0.0):
         received = f"{given[0]:.6g} m/s in steps of {given[1]:.6g} s"
@@ -149,10 +153,13 @@ def _rail(rail: RailBetween, path: Path, sensors: Array) -> Ground:
         allowed = "none: a rail is known under the contacts alone"
         raise InputError("sensors", f"{sensors.size} on a rail", allowed)
     channels, weights = _channels(rail, path.starts)
-    found, static = np.zeros((n, n)), np.array([each.sum(axis=1).mean() for each in weights])
+    found = np.zeros((n, n))
+    static = np.array([each.sum(axis=1).mean() for each in weights])
     found[channels.receiver, channels.source] = static[channels.table]
     squares, vectors = np.linalg.eigh(0.5 * (found + found.T))
-    none, modes, taps = np.zeros(0), np.zeros((n, 0)), kernel.weights.shape[1]
+    none = np.zeros(0)
+    modes = np.zeros((n, 0))
+    taps = kernel.weights.shape[1]
     softest = float(kernel.weights.sum(axis=1).max())
     least = float((kernel.weights @ (-1.0) ** np.arange(taps)).min())  # of all places in a bay
     limit = "the passing of sleepers v/L", kernel.speed / kernel.track.sleeper_spacing, PER_SLEEPER
@@ -174,7 +181,8 @@ def _channels(rail: RailBetween, starts: Array) -> tuple[Channels, list[Array]]:
                 tables += [] if known else [found]
                 pairs.append((source, receiver, known[0] if known else len(tables) - 1))
     source, receiver, table = np.array(pairs, dtype=np.int64).T.copy()
-    none, weights = np.zeros(0), [each.kernel.weights for each in tables]
+    none = np.zeros(0)
+    weights = [each.kernel.weights for each in tables]
     bays, period = rail.kernel.track.cell_bays, rail.kernel.track.period
     laid = [
         (each.poles, over_the_period(each.residues, bays), np.zeros((1, 1)))
@@ -235,7 +243,8 @@ def share_bent(over: Modal | RailBetween | Track | None, displaced: Array) -> fl
 
 def warn_if_bent(over: Modal | RailBetween | Track | None, displaced: Array) -> None:
     """Compare the displacement of what is rolled over under its contacts, m, with what its theory allows."""
-    share, small = share_bent(over, displaced), small_motion(over)
+    share = share_bent(over, displaced)
+    small = small_motion(over)
     if small is not None and share > LARGEST_DEFLECTION:
         deflection = rounded(float(np.abs(displaced).max()))
         meaning = f"{small.meaning[0].lower()}{small.meaning[1:]}"

@@ -127,7 +127,8 @@ class _OnEdges:
         # laws that are solved in every step remember where they were: all are laid out on all the way
         self.whole = [_laid(edge, 0, self.total + 1) for edge in self.mechanism.edges] if solved else []
         # approach of each contact that is within its data at all steps laid out; and where these begin
-        self.within, self.begun = np.full(self.contacts, np.inf), self.total
+        self.within = np.full(self.contacts, np.inf)
+        self.begun = self.total
 
     def place(self, contact: int, step: int) -> float:
         """Position of a contact at a step, m."""
@@ -135,7 +136,8 @@ class _OnEdges:
 
     def shapes_into(self, first: int, shapes: Array, slopes: Array) -> None:
         """Write mode shapes under the contacts and their rates (steps, n, s), from a step on."""
-        starts, stop = self.mechanism.first_modes, first + len(shapes)
+        starts = self.mechanism.first_modes
+        stop = first + len(shapes)
         shapes[:], slopes[:] = 0.0, 0.0
         for k, edge in enumerate(self.mechanism.edges):
             for side in edge.sides:
@@ -240,13 +242,17 @@ def roll_mechanism(
         If nothing is at rest at the start, or the motion runs away.
     """
     h = positive("time step (s)", time_step)
-    settled, recorded = round(settling / h), round(positive("duration (s)", duration) / h)
+    settled = round(settling / h)
+    recorded = round(positive("duration (s)", duration) / h)
     require(recorded >= 1, "duration (s)", duration, f"at least one time step of {h:.6g} s")
     course = _OnEdges(mechanism, h, settled + recorded)
     seen = np.zeros((0, mechanism.first_modes[-1])) if sensors is None else np.asarray(sensors, dtype=float)
     looked_at = np.unique(np.linspace(0, course.total, LOOKED_AT).astype(int)).tolist()
-    bodies, laws, prepared = mechanism.still(), [edge.law for edge in mechanism.edges], course.at_start()
-    ground, damping = _ground(course, seen, looked_at), np.array([law.damping for law in laws])
+    bodies = mechanism.still()
+    laws = [edge.law for edge in mechanism.edges]
+    prepared = course.at_start()
+    ground = _ground(course, seen, looked_at)
+    damping = np.array([law.damping for law in laws])
     loads = np.full(course.contacts, positive("load (N)", load))
     system = assembly.system_of(ground, bodies, loads, h, 1.0, mechanism.constant)
     # with contacts that are soft enough for the time step
@@ -255,7 +261,8 @@ def roll_mechanism(
     energies = stepper.energies()
     stepper.run(progress, checkpoint)
     _warn(stepper, course)
-    kept, record = slice(settled, None), stepper.record
+    kept = slice(settled, None)
+    record = stepper.record
     return RolledMechanism(
         record.contact_force[:, kept],
         tuple(
@@ -272,7 +279,8 @@ def roll_mechanism(
 
 def rest_of(mechanism: Mechanism, step: int, load: float) -> Array:
     """Coordinates of all modes (s,) of a mechanism at rest, as it stands at a step; `load` as above, N."""
-    course, bodies = _OnEdges(mechanism, 1.0, 0), mechanism.still()
+    course = _OnEdges(mechanism, 1.0, 0)
+    bodies = mechanism.still()
     ground = _ground(course, np.zeros((0, mechanism.first_modes[-1])), [step])
     system = assembly.system_of(ground, bodies, np.full(course.contacts, load), 1.0, 1.0, mechanism.constant)
     laws = [_laid(edge, step, step + 1) for edge in mechanism.edges]
@@ -282,7 +290,8 @@ def rest_of(mechanism: Mechanism, step: int, load: float) -> Array:
 def _ground(course: _OnEdges, sensors: Array, looked_at: Sequence[int]) -> Ground:
     """All structures as one: what they are to the contacts at the first of some steps, and at worst."""
     mechanism, n = course.mechanism, course.contacts
-    none, of = np.zeros(0), mechanism.structures
+    none = np.zeros(0)
+    of = mechanism.structures
     natural = 2.0 * np.pi * np.concatenate([none, *(each.natural_frequencies for each in of)])
     ratios = np.concatenate([none, *(each.damping_ratios for each in of)])
     each = steps.alternating_of_modes(steps.resolved_step(natural, ratios, course.time_step))
@@ -294,7 +303,8 @@ def _ground(course: _OnEdges, sensors: Array, looked_at: Sequence[int]) -> Groun
     frequencies = natural / (2.0 * np.pi)
     followed = frequencies[frequencies <= HIGHEST]
     limit = "the highest mode of a structure", float(followed.max(initial=0.0)), PER_MODE
-    under, channels = (shapes[0], slopes[0]), no_channels(n)
+    under = (shapes[0], slopes[0])
+    channels = no_channels(n)
     return Ground(natural, ratios, *under, sensors, channels, np.inf, least, least, limit, np.zeros((n, n)))
 
 
@@ -302,7 +312,8 @@ def _start(
     ground: Ground, bodies: Sequence[Body], system: System, prepared: Sequence[Prepared | SteppedLaw]
 ) -> tuple[Array, Motion]:
     """Stiffnesses of the contacts at rest (n,), N/m, and the state that goes on from there."""
-    n, shapes = len(system.loads), assembly.shapes_at_contacts(ground, system)
+    n = len(system.loads)
+    shapes = assembly.shapes_at_contacts(ground, system)
     rows = block_diag(*(body.contacts for body in bodies))
     answers = shapes.any(axis=0) | (system.stiffness > 0.0)  # others there is nothing to say of
     held = np.diag(np.where(answers, system.stiffness, 1.0))
@@ -313,7 +324,8 @@ def _start(
     laws, relative = assembly.evaluations(prepared)
     given = matrix, pressing, every, np.zeros(n), system.loads
     x, force, approach, stiffness = assembly.equilibrium(*given, laws, relative)
-    motion, count = assembly.at_zero(system), shapes.shape[1]
+    motion = assembly.at_zero(system)
+    count = shapes.shape[1]
     motion.displacement[:] = x[:count]
     motion.push[:] = constant + force @ shapes
     first = count

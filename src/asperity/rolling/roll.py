@@ -87,10 +87,13 @@ class RolledBodies:
     @property
     def flights(self) -> list[tuple[Array, Array]]:
         """When each contact is lost, and how long for, s."""
-        none, step, found = np.zeros(1, dtype=bool), self.time[1], []
+        none = np.zeros(1, dtype=bool)
+        step = self.time[1]
+        found = []
         for touching in self.in_contact:
             edges = np.diff(np.concatenate([none, ~touching, none]).astype(np.int8))
-            starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
+            starts = np.flatnonzero(edges == 1)
+            ends = np.flatnonzero(edges == -1)
             found.append((starts * step, (ends - starts) * step))
         return found
 
@@ -180,8 +183,11 @@ def roll_bodies(
 
 def _rolled(stepper: Stepper, path: ground.Path, energies: tuple[float, float, float]) -> RolledBodies:
     """What is kept of a run that started with these energies."""
-    record, system, counts = stepper.record, stepper.system, stepper.motion.counts
-    kept, softened = slice(path.settled, None), system.softening[:, None] * record.contact_force
+    record = stepper.record
+    system = stepper.system
+    counts = stepper.motion.counts
+    kept = slice(path.settled, None)
+    softened = system.softening[:, None] * record.contact_force
     seen = record.relative_displacement - softened
     apart = np.array(list(map(flying, stepper.prepared, record.contact_force, seen)))
     beyond = [
@@ -223,7 +229,8 @@ def _visited(prepared: pointforce.Prepared | SteppedLaw, approach: Array) -> tup
 
 def _refuse_missed_loads(stepper: Stepper, path: ground.Path, apart: NDArray[np.bool_]) -> None:
     """Hold each body that nothing but its contacts holds to its load; `apart` (c, n) at every step."""
-    record, of = stepper.record, stepper.system.body
+    record = stepper.record
+    of = stepper.system.body
     touched = []  # how far texture and contact displace bodies while they touch, m
     for approach, off in zip(record.relative_displacement, apart, strict=True):
         touched.append(0.0 if off.all() else float(np.ptp(approach[~off])))
@@ -232,7 +239,8 @@ def _refuse_missed_loads(stepper: Stepper, path: ground.Path, apart: NDArray[np.
         own = of == k
         if (free := free_motion(body)) is not None:
             shape, mass, load = free
-            name, reach = stepper.laws[int(np.argmax(own))].name, sunk + max(np.compress(own, touched))
+            name = stepper.laws[int(np.argmax(own))].name
+            reach = sunk + max(np.compress(own, touched))
             force = shape @ record.contact_force[own]
             refuse_missed_load(name, force, load, mass, reach, path.time_step, path.settled)
 
@@ -255,10 +263,14 @@ def ledger_of(stepper: Stepper, before: tuple[float, float, float]) -> Ledger:
 
 def _missed_of_dampers(stepper: Stepper) -> float:
     """Energy, J, that stiff dampers of bodies took beyond what the ledger has of them."""
-    h, of, record, missed = stepper.course.time_step, stepper.system.body, stepper.record, 0.0
+    h = stepper.course.time_step
+    of = stepper.system.body
+    record = stepper.record
+    missed = 0.0
     for k, (body, core, rates) in enumerate(zip(stepper.bodies, record.core, stepper.started, strict=True)):
         if steps.stiff_dampers(body, h):
-            count, force = len(body.mass), record.contact_force[of == k]
+            count = len(body.mass)
+            force = record.contact_force[of == k]
             missed += steps.missed_by_powers(body, h, core[:count], rates[:count], force)
     return missed
 
@@ -353,7 +365,8 @@ def refuse_missed_load(
     driven = 0.5 * (force[1:] + force[:-1]) - load  # over each step
     if driven.size < LEAST:
         return
-    missed, time = float(driven.mean()), driven.size * time_step
+    missed = float(driven.mean())
+    time = driven.size * time_step
     if abs(missed) <= STILL * load:
         return
     error = np.sqrt(2.0) * float(np.std(np.cumsum(driven - missed))) / driven.size

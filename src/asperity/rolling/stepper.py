@@ -76,7 +76,8 @@ class OnPaths:
 
     def shapes_into(self, first: int, shapes: Array, slopes: Array) -> None:
         """Write mode shapes under the contacts and their slopes (steps, n, s), from a step on."""
-        over, spacing = self.over, self.path.speed * self.path.time_step
+        over = self.over
+        spacing = self.path.speed * self.path.time_step
         if over is not None and not isinstance(over, RailBetween):
             for k, at in enumerate(self.path.positions[:, first]):
                 shapes[:, k], slopes[:, k] = over.shapes_along(float(at), spacing, len(shapes))
@@ -115,10 +116,12 @@ class Stepper:
     displacements: bool = False  # whether those of the sensors are recorded
 
     def __post_init__(self) -> None:
-        n, steps = self.course.contacts, self.course.total + 1
+        n = self.course.contacts
+        steps = self.course.total + 1
         (b, states), (sensors, modes) = self.system.core_pressed.shape, self.system.sensors.shape
         force, approach, over, rolling = np.zeros((4, n, steps))
-        core, acceleration = np.zeros((b, states // 2, steps)), np.zeros((sensors, steps))
+        core = np.zeros((b, states // 2, steps))
+        acceleration = np.zeros((sensors, steps))
         moved = np.zeros((sensors if self.displacements else 0, steps))
         self.record = stepping.Histories(force, approach, over, rolling, core, acceleration, moved)
         self.stepped = {k: law for k, law in enumerate(self.prepared) if not isinstance(law, Prepared)}
@@ -134,11 +137,16 @@ class Stepper:
 
     def energies(self) -> tuple[float, float, float]:
         """Now, J: of the structure, of the bodies, and of the bodies under their constant forces."""
-        motion, system, structure = self.motion, self.system, self.system.sensors.shape[1]
+        motion = self.motion
+        system = self.system
+        structure = self.system.sensors.shape[1]
         modes = 0.5 * (motion.velocity**2 + system.stiffness * motion.displacement**2)
-        d, stored, pressed = system.core_shapes.shape[1], float(modes[structure:].sum()), 0.0
+        d = system.core_shapes.shape[1]
+        stored = float(modes[structure:].sum())
+        pressed = 0.0
         for body, core in zip(self.bodies, motion.core, strict=True):
-            y, rate = core[: len(body.mass)], core[d : d + len(body.mass)]
+            y = core[: len(body.mass)]
+            rate = core[d : d + len(body.mass)]
             stored += 0.5 * float(rate @ body.mass @ rate + y @ body.stiffness @ y)
             pressed += float(body.pressing @ y)
         pressed -= float(system.constant @ motion.displacement) if len(system.constant) else 0.0
@@ -146,7 +154,9 @@ class Stepper:
 
     def run(self, progress: Progress | None, checkpoint: Checkpoint | None) -> None:
         """Go on to the end of the path, from where a checkpoint was left, if it was."""
-        motion, saved, total = self.motion, time.monotonic(), self.course.total
+        motion = self.motion
+        saved = time.monotonic()
+        total = self.course.total
         if checkpoint is not None:
             self._restore(checkpoint)
         state = self._state()
@@ -199,7 +209,9 @@ class Stepper:
 
         One that settles with the bodies does without iteration, but where its damper engages or lets go.
         """
-        step, law, damping = self.offset + row, laws[k], float(self.laws[k].damping)
+        step = self.offset + row
+        law = laws[k]
+        damping = float(self.laws[k].damping)
         solve = stepping.solve_law.py_func
         if isinstance(law, Prepared):
             in_flight = law.damped_in_flight
@@ -210,7 +222,8 @@ class Stepper:
 
     def _ran_away(self) -> ComputationError:
         motion, course = self.motion, self.course
-        step, worst = int(motion.counts[0]), int(np.argmax(np.abs(motion.force[0])))
+        step = int(motion.counts[0])
+        worst = int(np.argmax(np.abs(motion.force[0])))
         return ComputationError(
             f"the motion runs away: at step {step}, time {step * course.time_step:.6g} s, position "
             f"{course.place(worst, step):.6g} m, the contact force is {rounded(motion.force[0, worst])} N "

@@ -69,7 +69,8 @@ def exponentials(matrices: Array) -> Array:
     """Exponentials of small matrices (k, n, n), all at once: Taylor series, scaled and squared."""
     largest = max(float(np.abs(matrices).sum(axis=2).max(initial=0.0)), 1e-300)  # no logarithm of zero
     squarings = max(0, int(np.ceil(np.log2(largest / TAYLOR_RADIUS))))
-    scaled, unit = matrices / 2.0**squarings, np.eye(matrices.shape[-1])
+    scaled = matrices / 2.0**squarings
+    unit = np.eye(matrices.shape[-1])
     result = unit + scaled / TAYLOR_TERMS
     for term in range(TAYLOR_TERMS - 1, 0, -1):
         result = unit + scaled @ result / term
@@ -133,8 +134,11 @@ def body_step(body: Body, time_step: float) -> Array:
     Natural coordinates that turn by more than RESOLVED in a step only answer as those of `resolved_step`.
     """
     squares, basis, damping, followed = _natural(body, time_step)
-    slow, fast, d = np.flatnonzero(followed), np.flatnonzero(~followed), len(squares)
-    step, places = np.zeros((2 * d, 4 * d)), np.concatenate([slow, d + slow])
+    slow = np.flatnonzero(followed)
+    fast = np.flatnonzero(~followed)
+    d = len(squares)
+    step = np.zeros((2 * d, 4 * d))
+    places = np.concatenate([slow, d + slow])
     stiffness = np.diag(squares[slow])
     step[np.ix_(places, np.concatenate([places, 2 * d + places]))] = exact_step(
         stiffness[None], damping[np.ix_(slow, slow)][None], time_step
@@ -160,13 +164,16 @@ def taken_by_dampers(body: Body, time_step: float) -> Array:
     little happens, and doubled from there, which is stable however stiff the dampers are.
     """
     squares, basis, damping, followed = _natural(body, time_step)
-    d, slow, h = len(squares), np.flatnonzero(followed), time_step
+    d = len(squares)
+    slow = np.flatnonzero(followed)
+    h = time_step
     s = len(slow)
     place, rate, force, rise = (slice(i * s, (i + 1) * s) for i in range(4))
     damping = damping[np.ix_(slow, slow)]
     generator, power = np.zeros((2, 4 * s, 4 * s))
     generator[place, rate] = generator[rate, force] = generator[force, rise] = np.eye(s)
-    generator[rate, place], generator[rate, rate] = -(h**2) * np.diag(squares[slow]), -h * damping
+    generator[rate, place] = -(h**2) * np.diag(squares[slow])
+    generator[rate, rate] = -h * damping
     power[rate, rate] = damping / h
     size = float(np.abs(generator).sum(axis=1).max(initial=TAYLOR_RADIUS))
     doublings = max(0, int(np.ceil(np.log2(size / TAYLOR_RADIUS))))
@@ -176,10 +183,14 @@ def taken_by_dampers(body: Body, time_step: float) -> Array:
     taken = np.einsum("n,nij,ik,nkl->jl", 0.5 * part * weights, on_the_way, power, on_the_way)
     (step,) = exponentials(generator[None] * part)
     for _ in range(doublings):
-        taken, step = taken + step.T @ taken @ step, step @ step
-    natural, pushed = (basis.T @ body.mass)[slow], h**2 * basis.T[slow]  # z = natural y
+        taken = taken + step.T @ taken @ step
+        step = step @ step
+    natural = (basis.T @ body.mass)[slow]
+    pushed = h**2 * basis.T[slow]  # z = natural y
     into = block_diag(natural, h * natural, np.zeros((2 * s, 2 * d)))
-    into[force, 2 * d : 3 * d], into[rise, 2 * d : 3 * d], into[rise, 3 * d :] = pushed, -pushed, pushed
+    into[force, 2 * d : 3 * d] = pushed
+    into[rise, 2 * d : 3 * d] = -pushed
+    into[rise, 3 * d :] = pushed
     return np.asarray(into.T @ taken @ into).reshape(4, d, 4, d)
 
 
@@ -190,9 +201,15 @@ def missed_by_powers(body: Body, h: float, coordinates: Array, rates: Array, for
     """
     from scipy.signal import lfilter
 
-    step, pushed = body_step(body, h), body.contacts.T @ forces - body.pressing[:, None]
-    y, before, now = coordinates[:, :-1], pushed[:, :-1], pushed[:, 1:]
-    on_rates, from_place, from_before, from_now = step[1, :, 1], step[1, :, 0], step[1, :, 2], step[1, :, 3]
+    step = body_step(body, h)
+    pushed = body.contacts.T @ forces - body.pressing[:, None]
+    y = coordinates[:, :-1]
+    before = pushed[:, :-1]
+    now = pushed[:, 1:]
+    on_rates = step[1, :, 1]
+    from_place = step[1, :, 0]
+    from_before = step[1, :, 2]
+    from_now = step[1, :, 3]
     driven = from_place @ y + from_before @ before + from_now @ now
     decay, shapes = np.linalg.eig(on_rates)
     amplitudes = np.linalg.solve(shapes, np.column_stack([rates, driven]).astype(complex))
@@ -234,13 +251,15 @@ def largest_values(law: Prepared | SteppedLaw, at_rest: float) -> tuple[float, f
     `at_rest` is the stiffness under the load, N/m. The stiffness in impacts is zero of a contact that never
     opens, the force where it is not known.
     """
-    stiffness, force = at_rest, 0.0
+    stiffness = at_rest
+    force = 0.0
     if not isinstance(law, Prepared):
         stiffness = RISE * at_rest
     elif np.isfinite(law.upper):
         height = law.values.max(axis=1) if not len(law.slopes) else 0.0
         forces, slopes, _ = evaluate_all(law, law.planes + height + law.upper, 0)
-        stiffness, force = max(at_rest, float(slopes.max())), float(forces.max())
+        stiffness = max(at_rest, float(slopes.max()))
+        force = float(forces.max())
     opens = not (isinstance(law, Prepared) and law.bilateral)
     return stiffness, max(stiffness, RISE * at_rest) if opens else 0.0, force
 

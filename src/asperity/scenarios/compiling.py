@@ -59,7 +59,8 @@ def time_to_compile() -> float:
 @contextmanager
 def _contact_compiled_beside() -> Iterator[subprocess.Popen[bytes] | None]:
     """Compile the contact in a second process, unless it is on disk or no process can be started."""
-    other, null = None, subprocess.DEVNULL
+    other = None
+    null = subprocess.DEVNULL
     if processors() > 1 and not is_kept(CONTACT):
         environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
         command = [sys.executable, "-W", "ignore", "-c", BESIDE]
@@ -79,14 +80,16 @@ def roll_once() -> None:
     """Roll two masses a few steps over a beam, and evaluate a law by itself."""
     beam = Beam.rectangular(1.0, 0.05, 0.01, material("steel"), highest_frequency=100.0)
     law = HertzLaw(1e10, StateTexture.unfiltered(np.zeros(8), 0.2))
-    bodies, where = [Body.rigid(0.5, 5.0)] * 2, {"start": 0.2, "positions": [0.0, 0.1]}
+    bodies = [Body.rigid(0.5, 5.0)] * 2
+    where = {"start": 0.2, "positions": [0.0, 0.1]}
     roll_bodies(beam, bodies, [law] * 2, speed=1.0, duration=1e-4, time_step=1e-5, **where)  # type: ignore[arg-type]
     pointforce.evaluate_all(law.prepare(np.zeros(2)), np.zeros(2), 0)
 
 
 def press_once(cells: str = "whole") -> None:
     """Press a body, to an approach and under a load, and estimate an approach."""
-    half_space, x = HalfSpace((9, 9), (1.0, 1.0), 1.0, cells=cells), np.arange(-4.0, 5.0) ** 2
+    half_space = HalfSpace((9, 9), (1.0, 1.0), 1.0, cells=cells)
+    x = np.arange(-4.0, 5.0) ** 2
     half_space.solve(np.add.outer(x, x), approach=5.0)
     half_space.solve(np.add.outer(x, x), load=5.0)
     box.foundation_approach(np.zeros((9, 9)), 1.0, 1.0, 1.0, np.inf)

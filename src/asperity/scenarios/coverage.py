@@ -53,18 +53,21 @@ def coverages(case: Case, textures: Textures) -> Iterator[Coverage]:
             found = _covered(case, name, called, float(wavelength[0]), float(wavelength[-1]))
             yield replace(found, columns="" if isinstance(spectrum, str) else columns_of_levels(spectrum))
         elif section.line is not None and (lines := textures.lines.get(part)):
-            longest, shortest = max(line.size for line in lines), 2.0 * lines[0].spacing
+            longest = max(line.size for line in lines)
+            shortest = 2.0 * lines[0].spacing
             yield _covered(case, name.replace(key, "line"), name_of(section.line), longest, shortest)
     if case.surface.file is not None and textures.maps:
         measured = textures.maps[0]
-        longest, shortest = max(measured.size), 2.0 * max(measured.spacing)
+        longest = max(measured.size)
+        shortest = 2.0 * max(measured.spacing)
         yield _covered(case, "surface.file", name_of(case.surface.file), longest, shortest)
 
 
 def _covered(case: Case, key: str, name: str, longest: float, shortest: float) -> Coverage:
     highest = min(HEARD[1], case.numerics.highest_frequency)
     bands, _, _ = third_octave_bands(min(HEARD[0], 0.1 * highest), highest)
-    lowest, top = case.speed / longest / HALF_BAND, case.speed / shortest * HALF_BAND
+    lowest = case.speed / longest / HALF_BAND
+    top = case.speed / shortest * HALF_BAND
     return Coverage(key, name, (longest, shortest), bands, bands[(bands >= lowest) & (bands <= top)])
 
 
@@ -81,7 +84,8 @@ def problems_of_coverage(case: Case, textures: Textures) -> Iterator[InputError]
     covered = {float(band) for each in found for band in each.covered}
     if not found or len(covered) >= FEWEST * len(found[0].bands):
         return
-    first, speed = found[0], case.speed
+    first = found[0]
+    speed = case.speed
     usual = " to ".join(f"{rounded(1e3 * speed / first.bands[end])} mm" for end in (-1, 0))
     remedy = f"At this speed they are heard by waves of {usual}. Is the unit of the wavelengths right?"
     if not covered and first.waves[1] > MEASURED_WAVE:

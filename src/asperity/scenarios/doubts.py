@@ -34,7 +34,9 @@ UNIT = "Is the unit right?"
 
 def doubt_sizes(case: Case, over: object) -> None:
     """Warn of sizes of a case that are hardly meant; `over` is what is rolled over."""
-    rolling, name, surface = case.rolling, case.ROLLING, case.surface
+    rolling = case.rolling
+    name = case.ROLLING
+    surface = case.surface
     mass, load = rolling.contact_mass, rolling.contact_load
     solid = 4.0 / 3.0 * math.pi * rolling.radius**3 * rolling.material.density
     if mass < HOLLOW * solid:
@@ -50,7 +52,8 @@ def doubt_sizes(case: Case, over: object) -> None:
         told = f"{rounded(last - first)} m are rolled, which hold less than the rms of the texture"
         _warn("surface.longest", surface.longest, "m", told, "mm")
     if surface.corrugation is not None and (wave := surface.corrugation_wavelength) is not None:
-        passed, highest = case.speed / wave, case.numerics.highest_frequency
+        passed = case.speed / wave
+        highest = case.numerics.highest_frequency
         if not LOWEST_HEARD <= passed <= 1.13 * highest:
             told = f"it is passed at {rounded(passed)} Hz, and spectra go from some {LOWEST_HEARD:g} Hz to "
             _warn("surface.corrugation_wavelength", wave, "m", f"{told}{highest:g} Hz", "mm")
@@ -61,7 +64,8 @@ def doubt_sizes(case: Case, over: object) -> None:
 
 def doubt_bearing(case: BallBearingCase) -> None:
     """Warn of sizes of a bearing that are hardly meant, and of a given time step that is long."""
-    of, load = case.bearing.bearing, case.radial + case.axial + case.bearing.bearing.preload
+    of = case.bearing.bearing
+    load = case.radial + case.axial + case.bearing.bearing.preload
     weight = GRAVITY * case.shaft.mass
     heavier = "radial" if case.radial >= case.axial else "axial"
     if load < LIGHTLY_LOADED * weight:

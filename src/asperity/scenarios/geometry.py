@@ -125,8 +125,13 @@ def geometry_of(case: scene.Case) -> Geometry:
     or in a groove that of circle in circle. Refused are contacts that are not small against the bodies, wider
     than a beam's section, or not held by the window, and a grid that is coarser than they are.
     """
-    body, over, contact, hertz = case.rolling, case.rolled_over, case.contact, case.smooth_contact
-    load, n, h = body.contact_load, window_cells(contact), contact.spacing
+    body = case.rolling
+    over = case.rolled_over
+    contact = case.contact
+    hertz = case.smooth_contact
+    load = body.contact_load
+    n = window_cells(contact)
+    h = contact.spacing
     section = parabola(contact, hertz.radius_y)
     if body.groove_radius is not None:
         section = groove_gap(across_window(contact), body.across, body.groove_radius)
@@ -154,7 +159,8 @@ def geometry_of(case: scene.Case) -> Geometry:
 
 def _check_half_space(case: scene.Case, hertz: Hertz, load: float) -> None:
     """Hold the contact under the load, and in the highest state given, to the half-space."""
-    body, top = case.rolling, case.contact.approaches
+    body = case.rolling
+    top = case.contact.approaches
     asked = [(hertz.approach(load), f"a working load of {in_newtons(load)}")]
     if top is not None:
         asked.append((top[-1], f"an approach of {rounded(top[-1] * 1e6)} µm"))
@@ -186,7 +192,8 @@ def _doubt_wheel(case: scene.Case) -> None:
 
 def _check_grid(cells: int, spacing: float, axes: tuple[float, float], load: float) -> None:
     """Hold the grid to the smooth contact under the load, N: the window holds it, cells are finer than it."""
-    wide, small = 2.2e6 * max(axes), min(axes)
+    wide = 2.2e6 * max(axes)
+    small = min(axes)
     width = f"the width of the smooth contact under {in_newtons(load)}"
     allowed = f"at least {rounded(wide, 4)} um, 1.1 times {width}"
     held = cells * spacing * 1e6
@@ -204,7 +211,8 @@ def _check_grid(cells: int, spacing: float, axes: tuple[float, float], load: flo
 
 def _measured_gap(case: scene.Case, hertz: Hertz, load: float) -> tuple[Array, Hertz]:
     """Gap of measured sections across the window, (n,), m, and the contact of its osculating parabola."""
-    y, both = across_window(case.contact), " and ".join(across.section_keys(case))
+    y = across_window(case.contact)
+    both = " and ".join(across.section_keys(case))
     met = case.meeting or across.meeting_of(case)
     for sentence in across.turned_sections(case, met):
         OutOfRangeWarning.warn(sentence, Grade.NOTE)

@@ -43,7 +43,8 @@ def place_of(path: Strip, shape: Geometry, speed: float, square_transfer: Square
     heights, felt = _heard(path, shape, speed)
     if not heights.any():
         return None
-    approach, dx = shape.hertz.approach(shape.load), shape.spacing[0]
+    approach = shape.hertz.approach(shape.load)
+    dx = shape.spacing[0]
     along, across = correlation_lengths(heights, shape.spacing)
     a, b = shape.semi_axes
     # rms force of the linear contact that follows the felt plane, up to 10 kHz
@@ -68,7 +69,8 @@ def _heard(path: Strip, shape: Geometry, speed: float) -> tuple[Array, Array]:
     first = (path.shape[0] - rows) // 2
     heights = path.rows(first, first + rows)
     felt = -areal_texture(heights, shape.spacing, [0.0], [shape.semi_axes]).heights[0]
-    known, lowest = slice(beside, rows - beside), LOW / speed
+    known = slice(beside, rows - beside)
+    lowest = LOW / speed
     dx = shape.spacing[0]
     return without_slow(heights[known], dx, lowest), without_slow(felt[known], dx, lowest)
 
@@ -265,7 +267,9 @@ def law_choice(prepared: PreparedCase) -> LawChoice | None:
 
     It holds wheels on rails, which stand for all that rolls over a track, and balls on beams, for all else.
     """
-    case, scene, path = prepared.case, prepared.scene, prepared.textures.path
+    case = prepared.case
+    scene = prepared.scene
+    path = prepared.textures.path
     if path is None or unmapped(prepared):
         return None
     kind = "wheel-on-rail" if isinstance(scene.over, Track) else "ball-on-beam"
@@ -280,14 +284,16 @@ def choose(mapped: LawMap, kind: str, place: Place, laws: Sequence[str]) -> LawC
     here = _coordinates(mapped, kind, place)
     distances = [float(np.linalg.norm(_coordinates(mapped, p.kind, p.place) - here)) for p in mapped.points]
     reached = [p.place.highest_wavenumber for p in mapped.points if p.kind == kind]
-    reach, nearest = (min(reached) / MARGIN, max(reached) * MARGIN), mapped.points[int(np.argmin(distances))]
+    reach = (min(reached) / MARGIN, max(reached) * MARGIN)
+    nearest = mapped.points[int(np.argmin(distances))]
     return LawChoice(place, {found.law: found for found in expected}, min(distances), nearest, reach)
 
 
 def expected_error(mapped: LawMap, kind: str, place: Place, law: str) -> ExpectedError:
     """Expect the error of a law at a place."""
     logarithm, deviation = estimate(mapped, kind, place, law)
-    error, factor = math.exp(logarithm), math.exp(mapped.spread[law] * deviation)
+    error = math.exp(logarithm)
+    factor = math.exp(mapped.spread[law] * deviation)
     return ExpectedError(law, error, error / factor, error * factor)
 
 
@@ -295,7 +301,8 @@ def estimate(mapped: LawMap, kind: str, place: Place, law: str) -> tuple[float, 
     """Estimate the logarithm of the error of a law, and its standard deviation in those of the whole map."""
     at, logarithms, inverse = _fitted(mapped, law)
     here = _coordinates(mapped, kind, place)[None]
-    to_points, mean = _covariance(at, here)[:, 0], float(logarithms.mean())
+    to_points = _covariance(at, here)[:, 0]
+    mean = float(logarithms.mean())
     weights = inverse @ to_points
     variance = float(_covariance(here, here)[0, 0] + NOISE - weights @ to_points)
     return mean + float(weights @ (logarithms - mean)), math.sqrt(variance)

@@ -55,7 +55,9 @@ class ReducedCase(PreparedCase):
         return built(self._of_law(spec_of(name)))
 
     def _of_law(self, spec: LawSpec) -> Materials:
-        case, contact, shape = self.case, self.case.contact, self.shape
+        case = self.case
+        contact = self.case.contact
+        shape = self.shape
         made_by: dict[str, Callable[[], Any]] = {
             "line": partial(self._line, spec),
             "areal": self._areal,
@@ -80,15 +82,18 @@ class ReducedCase(PreparedCase):
 
     def _line(self, law: LawSpec) -> StateTexture:
         """Line texture of the path, through the filter of a law that needs it."""
-        dx, start = self.shape.spacing[0], self.textures.start
+        dx = self.shape.spacing[0]
+        start = self.textures.start
         if Need.FILTER not in law.needs:
             return StateTexture.unfiltered(-self.textures.followed, dx, start)
         if self.reduction is None:  # smooth bodies: the filter of Hertz's patch, in closed form
-            taps, states = filter.punch_taps(self.shape.semi_axes[0], dx), np.zeros(1)
+            taps = filter.punch_taps(self.shape.semi_axes[0], dx)
+            states = np.zeros(1)
         else:
             line_filter = self.reduction.filters[reducing.normalisation(self.case.contact.normalise, law)]
             reducing.warn_of_filter(line_filter, law.name, self.reduction.pressed.approach)
-            taps, states = line_filter.taps, line_filter.contact_filter.approaches
+            taps = line_filter.taps
+            states = line_filter.contact_filter.approaches
         return self._over_defects(filter.filtered_texture(self.textures.line, dx, taps, states, start))
 
     def _over_defects(self, texture: StateTexture) -> StateTexture:
@@ -101,12 +106,15 @@ class ReducedCase(PreparedCase):
     def plane(self) -> StateTexture:
         """Plane that the nominal patch feels under the working load, along the path, with defects."""
         assert self.planes is not None
-        dx, start = self.shape.spacing[0], self.textures.start
+        dx = self.shape.spacing[0]
+        start = self.textures.start
         return self._over_defects(StateTexture.unfiltered(-self.planes, dx, start))
 
     def _areal(self) -> StateTexture:
         """Texture averaged under the patch of each state; not held, as it is as long as the path in each."""
-        path, axes, approaches = self.textures.path, self._reduced.semi_axes, self._reduced.approaches
+        path = self.textures.path
+        axes = self._reduced.semi_axes
+        approaches = self._reduced.approaches
         assert path is not None
         loaded = axes[:, 0] > 0.0
         within = np.minimum(axes[loaded], 0.5 * path.shape[1] * path.spacing[1])
@@ -121,7 +129,8 @@ class ReducedCase(PreparedCase):
 
     def wider(self, visited: tuple[float, float]) -> "ReducedCase | None":
         """One whose path is scanned for a motion between two approaches, m, too; None if this one's is."""
-        scanned, needed = self.scanned, states_around(self._reduced.approaches, visited)
+        scanned = self.scanned
+        needed = states_around(self._reduced.approaches, visited)
         both = slice(min(scanned.start, needed.start), max(scanned.stop, needed.stop))
         return None if both == scanned else replace(self, states=both)
 
@@ -147,7 +156,8 @@ class ReducedCase(PreparedCase):
 
         To a femtometre: what Fourier transforms leave depends on where along the path they are taken.
         """
-        half, heights = self.shape.body.shape[0] // 2, self.plane.heights[0]
+        half = self.shape.body.shape[0] // 2
+        heights = self.plane.heights[0]
         return -np.round(heights[half : len(heights) - half][self._scanned_rows], 15)
 
     @property
@@ -158,7 +168,9 @@ class ReducedCase(PreparedCase):
 
     def _table(self) -> ForceTable:
         """The scan of the path, to look forces up in."""
-        rows, dx, body = self._scanned_rows, self.shape.spacing[0], self.shape.body
+        rows = self._scanned_rows
+        dx = self.shape.spacing[0]
+        body = self.shape.body
         if self.textures.defects is not None:
             touches = first_touch(self.textures.surface, body, rows.step, rows.start) + self._scanned_planes
         else:
@@ -171,7 +183,8 @@ class ReducedCase(PreparedCase):
 
 def reduced_case(prepared: PreparedCase, progress: Progress) -> ReducedCase:
     """Reduce a case to what its laws are made of; one without samples has no state functions."""
-    path, reduction = prepared.textures.path, None
+    path = prepared.textures.path
+    reduction = None
     planes = None if path is None else reducing.patch_planes(path, prepared.shape)
     if prepared.textures.maps:
         reduction = reducing.reduce(prepared, planes, progress)

@@ -49,8 +49,10 @@ LONG = 2.0
 
 def prepare(case: Case, source: str = "case") -> PreparedCase:
     """Build and read all that a case needs, and refuse what cannot be computed, with all errors at once."""
-    begin, spent = time.perf_counter(), time.process_time()
-    made, errors = list[Any](), list[InputError]()
+    begin = time.perf_counter()
+    spent = time.process_time()
+    made = list[Any]()
+    errors = list[InputError]()
     with PhysicsWarning.caught() as caught, one_thread_in_linear_algebra():
         whole = (partial(make, case) for make in (scene_of, geometry_of, textures_of))
         for make in (*whole, thread_count, find_device):
@@ -66,7 +68,8 @@ def prepare(case: Case, source: str = "case") -> PreparedCase:
         warn_of_textures(case, prepared.shape, prepared.textures)
         doubt_sizes(case, prepared.scene.over)
         refuse(list(problems_of_coverage(case, prepared.textures)), source)
-    seconds, processor = {"textures": time.perf_counter() - begin}, time.process_time() - spent
+    seconds = {"textures": time.perf_counter() - begin}
+    processor = time.process_time() - spent
     return replace(prepared, caught=tuple(caught), seconds=seconds, processor=processor)
 
 
@@ -81,7 +84,8 @@ def _within_the_map(case: Case, textures: Textures) -> Case | None:
 
 def _problem_of_disk(prepared: PreparedCase) -> Iterator[InputError]:
     """A disk that does not hold the scan of the path."""
-    path, root = scan_sizes(prepared).get("path"), Store().root
+    path = scan_sizes(prepared).get("path")
+    root = Store().root
     if path is not None and (free := free_space(root)) < path.bytes > MOST_HELD:
         remedy = "Set $ASPERITY_CACHE to a folder on another disk, or free some space."
         allowed = f"{amount(path.bytes)} for the scan of the path"
@@ -124,13 +128,16 @@ def scan_sizes(prepared: PreparedCase) -> dict[str, ScanSize]:
 
 def scans_of(prepared: PreparedCase, states: Array) -> dict[str, list[ScanJob]]:
     """The scans of a case, whose states, m, are these."""
-    case, shape, textures = prepared.case, prepared.shape, prepared.textures
+    case = prepared.case
+    shape = prepared.shape
+    textures = prepared.textures
     half_space = shape.half_space(None)
 
     def scans(
         strips: Sequence[Strip], of: slice, stride: int, accuracy: float, anchor: int = 0
     ) -> list[ScanJob]:
-        rtol, at = rtol_for(accuracy * case.numerics.force_accuracy), states[of]
+        rtol = rtol_for(accuracy * case.numerics.force_accuracy)
+        at = states[of]
         return [ScanJob(half_space, strip, shape.body, at, stride, rtol, anchor=anchor) for strip in strips]
 
     found = {}
@@ -159,13 +166,16 @@ class ContactTrial:
 
 def try_contacts(prepared: PreparedCase, progress: Progress) -> ContactTrial:
     """Press some samples of a case, and compute the loading curve of the first."""
-    case, shape, textures = prepared.case, prepared.shape, prepared.textures
+    case = prepared.case
+    shape = prepared.shape
+    textures = prepared.textures
     with PhysicsWarning.ignored():
         progress(0, 2, "trying contacts")
         samples = reducing.samples_of(case, shape, textures.maps, shape.class_axes)
         half_space = shape.half_space(case.contact.hardness)
         solve = partial(half_space.solve, load=shape.load, rtol=case.numerics.rtol)
-        contacts, begin = [solve(shape.body - samples[0])], time.process_time()
+        contacts = [solve(shape.body - samples[0])]
+        begin = time.process_time()
         for sample in samples[1:]:
             if time.process_time() - begin > LONG:
                 break
@@ -181,7 +191,8 @@ def try_contacts(prepared: PreparedCase, progress: Progress) -> ContactTrial:
             approaches = np.array(given)
             highest = [[half_space.solve(shape.body - s, r).force for r in given[-2:]] for s in samples]
             reducing.refuse_low_states(approaches, np.mean(highest, axis=0), shape, working)
-        rtol, begin = rtol_for(case.numerics.force_accuracy), time.process_time()
+        rtol = rtol_for(case.numerics.force_accuracy)
+        begin = time.process_time()
         job = ScanJob(half_space, Rows(samples[0]), shape.body, approaches, rtol=rtol, device=None)
         counts = scan_forces(job, workers=1).counts
         solution = (time.process_time() - begin) / len(approaches)
@@ -199,7 +210,9 @@ def doubt_time_step(prepared: PreparedCase) -> None:
     The contact is the smooth one: on a track on a bay of rail; elsewhere on what rolls, which is less than
     together with what yields under it.
     """
-    case, over, shape = prepared.case, prepared.scene.over, prepared.shape
+    case = prepared.case
+    over = prepared.scene.over
+    shape = prepared.shape
     highest = case.numerics.highest_frequency
     own = np.concatenate([body.natural_frequencies for body in prepared.scene.rolling])
     limits = [("the highest mode of a body", float(own[own <= highest].max(initial=0.0)), PER_MODE)]
@@ -229,7 +242,8 @@ def doubt_deflection(prepared: PreparedCase) -> None:
     and what nothing holds. A rail is looked at under one load.
     """
     scene, (first, last) = prepared.scene, prepared.case.rolled_range
-    over, static = scene.over, list[Array]()
+    over = scene.over
+    static = list[Array]()
     if isinstance(over, Track):
         static.append(np.array(over.static_deflection(float(scene.loads.max()))))
     elif over is not None:
@@ -294,7 +308,8 @@ def expect(prepared: PreparedCase, progress: Progress) -> Work:
     Work
         Its time within a factor of two (`benchmarks/told_times.py`).
     """
-    case, trial = prepared.case, None
+    case = prepared.case
+    trial = None
     doubt_time_step(prepared)
     doubt_deflection(prepared)
     with one_thread_in_linear_algebra():

@@ -69,7 +69,8 @@ def by_key(case: Case, error: InputError) -> InputError:
 def _problems_of_record(prepared: PreparedCase) -> Iterator[InputError]:
     """A record that holds no one-third octave up to the highest frequency."""
     case = prepared.case
-    recorded, highest = recorded_time(case, prepared.textures), case.numerics.highest_frequency
+    recorded = recorded_time(case, prepared.textures)
+    highest = case.numerics.highest_frequency
     samples = math.floor(recorded / case.time_step * (1.0 + 1e-12)) + 1
     lowest = lowest_band(samples, case.time_step)
     if highest * HALF_BAND < lowest:
@@ -85,7 +86,9 @@ def _problems_of_record(prepared: PreparedCase) -> Iterator[InputError]:
 
 def _problem_of_heights(prepared: PreparedCase) -> InputError | None:
     """Heights that no surface has on which bodies roll: most often in another unit."""
-    case, shape, textures = prepared.case, prepared.shape, prepared.textures
+    case = prepared.case
+    shape = prepared.shape
+    textures = prepared.textures
     (nx, ny), maps = shape.body.shape, textures.maps
     depth, wave = case.surface.corrugation, case.surface.corrugation_wavelength
     if depth is not None and wave is not None and 2.0 * math.pi * depth > STEEPEST * wave:
@@ -94,7 +97,8 @@ def _problem_of_heights(prepared: PreparedCase) -> InputError | None:
             f"slopes up to {STEEPEST:g}, {written(STEEPEST * wave / (2.0 * math.pi), 'm', 'um')} in these"
         )
         return InputError("surface.corrugation", received, allowed, "Are both units right?")
-    slope, rough = float(np.sqrt(np.mean(np.diff(textures.line) ** 2))) / case.contact.spacing, 0.0
+    slope = float(np.sqrt(np.mean(np.diff(textures.line) ** 2))) / case.contact.spacing
+    rough = 0.0
     if maps:
         slope = textures.rms_slope
         rough = float(np.mean([np.std(sample.heights[:nx, :ny]) for sample in maps]))
@@ -125,7 +129,9 @@ def _problems_of_kernel(case: Case, track: Track) -> Iterator[InputError]:
 
 def problems(prepared: PreparedCase) -> Iterator[InputError]:
     """What the run would refuse of textures, samples, window and track, as far as it can be known before."""
-    contact, shape, textures = prepared.case.contact, prepared.shape, prepared.textures
+    contact = prepared.case.contact
+    shape = prepared.shape
+    textures = prepared.textures
     yield from _problems_of_record(prepared)
     if isinstance(prepared.scene.over, Track):
         yield from _problems_of_kernel(prepared.case, prepared.scene.over)
@@ -143,7 +149,8 @@ def problems(prepared: PreparedCase) -> Iterator[InputError]:
         yield InputError("contact.window", received, allowed, "Choose a smaller one, or measure wider maps.")
         return
     if textures.strips and any(strip.heights.any() for strip in textures.strips):
-        rows, stride = min(strip.shape[0] for strip in textures.strips), reducing.filter_stride(shape)
+        rows = min(strip.shape[0] for strip in textures.strips)
+        stride = reducing.filter_stride(shape)
         if (rows - nx) // stride + 1 < FEWEST_POSITIONS:
             least = (nx + (FEWEST_POSITIONS - 1) * stride) * contact.spacing
             received = f"strips of {rounded(rows * contact.spacing * 1e6, 4)} um"

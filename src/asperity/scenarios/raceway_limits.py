@@ -37,7 +37,8 @@ def doubt_surface(surface: Raceway, approach: float) -> None:
     slope = np.diff(waves, axis=0, append=waves[:1]) / surface.spacing[0]
     steep = float(np.sqrt(np.mean(slope**2)))
     require(steep <= STEEPEST, "rms slope", rounded(steep), f"at most {STEEPEST:g}", REMEDY)
-    highest, held = 0.5 * float(np.ptp(waves)), HIGHEST_FORCE ** (2.0 / 3.0) * approach
+    highest = 0.5 * float(np.ptp(waves))
+    held = HIGHEST_FORCE ** (2.0 / 3.0) * approach
     if highest > held:
         OutOfRangeWarning.warn(
             f"Waves all around of ± {rounded(highest * 1e6)} µm are {rounded(highest / approach)} times "

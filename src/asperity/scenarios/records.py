@@ -248,7 +248,8 @@ def behind_run_in(
         before = max(missing, 0)
         laid = synthesis.extend(heights, rows, "mirror", spacing=1.0, start=-before)
         return laid, ", its mirror image for the run-in" * bool(before)
-    how, fade = cast(synthesis.Continuation, continuation), fade if continuation == "repeat" else 0
+    how = cast(synthesis.Continuation, continuation)
+    fade = fade if continuation == "repeat" else 0
     return synthesis.extend(heights, rows, how, spacing=1.0, start=-run_in, crossfade=fade), f", {how}ed"
 
 
@@ -300,7 +301,8 @@ def lines_around(rolling: body.Rolling, name: str, grid: Grid) -> Record:
 def line_around(rolling: body.Rolling, name: str, contact: int, grid: Grid) -> Record:
     """Lay the measured line of a contact out as one turn that closes on itself, the same all across, m."""
     measured, origin = processed(rolling, name, degree=0)
-    line, whole = measured[contact % len(measured)], grid.length
+    line = measured[contact % len(measured)]
+    whole = grid.length
     length = len(line.heights) * line.spacing
     if line.missing_share > 0.0 or length < (1.0 - FULL_TURN) * whole:
         raise _not_round(name, f"{length:.4g} m" + ", with gaps" * bool(line.missing_share), whole)

@@ -112,7 +112,9 @@ def reduce(prepared: PreparedCase, planes: Array | None, progress: Progress) -> 
     `planes` (rows,), m, are from `patch_planes` for the path, where it is areal. The cache keeps finished
     scans.
     """
-    case, shape, textures = prepared.case, prepared.shape, prepared.textures
+    case = prepared.case
+    shape = prepared.shape
+    textures = prepared.textures
     contact, numerics = case.contact, case.numerics
     half_space = shape.half_space(contact.hardness)
     samples = samples_of(case, shape, textures.maps, shape.class_axes)
@@ -202,7 +204,8 @@ def _approaches(prepared: PreparedCase, along: Array | None, samples: Sequence[A
     Those of the samples do not depend on the path; more lie below where it is touched earlier, by whole
     steps: paths of other lengths over the same surface have them in common.
     """
-    contact, shape = prepared.case.contact, prepared.shape
+    contact = prepared.case.contact
+    shape = prepared.shape
     if contact.approaches is not None:
         return np.array(contact.approaches)
     places = touched_places(prepared.textures, shape)
@@ -220,7 +223,8 @@ def touched_places(textures: Textures, shape: Geometry) -> list[Array]:
 
     A few samples seldom meet the highest peak, nor the flattest place, which takes the largest forces last.
     """
-    places, nx = [], shape.body.shape[0]
+    places = []
+    nx = shape.body.shape[0]
     for strip in textures.strips:
         planes = patch_planes(strip, shape)
         touches = _touches(strip.heights, planes, shape)
@@ -239,7 +243,8 @@ def chosen_states(places: Sequence[Array], shape: Geometry, half_space: HalfSpac
     forces = np.geomspace(light, shape.largest_force, PRESSED)
     curves = []
     for place in places:
-        approaches, start = [], None
+        approaches = []
+        start = None
         for force in forces:
             contact = half_space.solve(shape.body - place, load=force, start=start, rtol=1e-3)
             approaches.append(contact.approach)
@@ -294,7 +299,9 @@ def line_filters(
     states, if no law needs one. States whose mean force is out of `filtered_loads` have no filter. Filters of
     bodies without texture are sin q/q in closed form.
     """
-    case, shape, textures = prepared.case, prepared.shape, prepared.textures
+    case = prepared.case
+    shape = prepared.shape
+    textures = prepared.textures
     contact, force = case.contact, ensemble.mean_force
     needing = [spec for spec in map(spec_of, case.laws) if Need.FILTER in spec.needs]
     least, largest = filtered_loads(contact, shape)
@@ -338,21 +345,27 @@ def filters_of(
 
     Of strips without texture it is sin q/q in closed form.
     """
-    dx, approaches, tangent = shape.spacing[0], states.approaches, states.tangents
+    dx = shape.spacing[0]
+    approaches = states.approaches
+    tangent = states.tangents
     axes = np.array([shape.axes(f) for f in states.forces])
     if not any(np.ptp(strip.heights) for strip in strips):
         wavenumber = np.geomspace(0.01, 2.0, SMOOTH_WAVENUMBERS) / axes[:, 0].max()
         smooth = filter.closed_form(approaches, wavenumber, axes[:, 0], tangent)
         taps = filter.punch_taps(axes[:, 0], dx)
         return dict.fromkeys(needed, filter.LineFilter(smooth, taps, dx)), scan.total([])
-    half_space, device, stride = shape.half_space(hardness), find_device(), filter_stride(shape)
+    half_space = shape.half_space(hardness)
+    device = find_device()
+    stride = filter_stride(shape)
     rtol = scan.rtol_for(scan.FILTER_SHARE * accuracy)
     jobs = [
         scan.ScanJob(half_space, strip, shape.body, approaches, stride, rtol, device=device)
         for strip in strips
     ]
     scans = _scanned_strips(jobs, progress)
-    half, beside, spectra = shape.body.shape[0] // 2, (axes[:, 1] / shape.spacing[1]).astype(int), []
+    half = shape.body.shape[0] // 2
+    beside = (axes[:, 1] / shape.spacing[1]).astype(int)
+    spectra = []
     for strip, scanned in zip(strips, scans, strict=True):
         rows = scanned.forces.shape[1] * stride
         # the lines under the patch of each state, at every row of the grid

@@ -70,7 +70,8 @@ def restricted(textures: Textures, spacing: float, every: int, lines: int) -> Te
     def thinned(surface: HeightMap, kept: int | None) -> HeightMap:
         return replace(surface, heights=area(surface.heights, 0, kept), spacing=(wide, wide))
 
-    wide, path = every * spacing, textures.path
+    wide = every * spacing
+    path = textures.path
     if path is not None:
         rows, across = path.shape
         if rows * across > MOST_POINTS:
@@ -153,9 +154,15 @@ def settings_for(prepared: PreparedCase, approaches: Array) -> list[Setting]:
     The grid gets nodes between its own: window, strips and time step stay.
     """
     case, textures = prepared.case, prepared.textures
-    spacing, window, count = case.contact.spacing, case.contact.window, case.contact.samples
-    half, step, strip = window_cells(case.contact) // 2, case.time_step, {}
-    fine, wider, narrower = 0.5 * spacing, (4 * half + 1) * spacing, (2 * (half // 2) + 1) * spacing
+    spacing = case.contact.spacing
+    window = case.contact.window
+    count = case.contact.samples
+    half = window_cells(case.contact) // 2
+    step = case.time_step
+    strip = {}
+    fine = 0.5 * spacing
+    wider = (4 * half + 1) * spacing
+    narrower = (2 * (half // 2) + 1) * spacing
     if textures.strips:  # a little less than they are, so that no rounding lengthens them
         rows = min(each.shape[0] for each in textures.strips)
         strip = {"contact.sample_length": rows * textures.strips[0].spacing[0] * (1 - 1e-9)}

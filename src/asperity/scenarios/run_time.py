@@ -109,7 +109,8 @@ def time_of_contacts(job: ScanJob, solution: float, shape: Geometry | None = Non
     `solution` is that of a contact of a loading curve, s. With a geometry approaches count from the planes
     that its nominal patch feels.
     """
-    states, rows = len(job.approaches), job.body.shape[0]
+    states = len(job.approaches)
+    rows = job.body.shape[0]
     positions = min(FEW, job.positions)
     if positions <= FIRST + 1 or positions * states * solution > PATIENCE:
         return FOLLOWING * solution
@@ -133,17 +134,20 @@ def time_of_contacts(job: ScanJob, solution: float, shape: Geometry | None = Non
 
 def of_track(prepared: PreparedCase) -> dict[str, float]:
     """Parts of a track; nothing of other structures."""
-    case, over = prepared.case, prepared.scene.over
+    case = prepared.case
+    over = prepared.scene.over
     if not isinstance(over, Track):
         return {}
     offsets = prepared.scene.offsets
     apart = np.unique(np.abs(np.round(np.subtract.outer(offsets, offsets), 6)))
     kernels = 1.0 + 2.0 * float(np.count_nonzero((apart > 0.0) & (apart < REACH)))
     bays = over.cell_bays
-    taps, passed = SHORTEST / case.time_step, SHORTEST * case.speed / over.sleeper_spacing + 2.0
+    taps = SHORTEST / case.time_step
+    passed = SHORTEST * case.speed / over.sleeper_spacing + 2.0
     of_kernel = RESPONSE * bays * STARTS**2 * passed * taps
     poles = 0.0 if case.numerics.kernel == "scatter" else POLES + POLES_OF_BAY * (bays if over.bays else 0)
-    steps, points = case.rolled_time / case.time_step, len(case.point_positions)
+    steps = case.rolled_time / case.time_step
+    points = len(case.point_positions)
     return {
         "the track": TRACK_START + (SOUND_OF_BAY * bays if over.bays else 0.0) + kernels * poles,
         "the moving kernel": kernels * of_kernel,
@@ -154,7 +158,8 @@ def of_track(prepared: PreparedCase) -> dict[str, float]:
 
 def of_laws(prepared: PreparedCase, steps: int, solution: float) -> dict[str, float]:
     """Parts of the laws, with the processor time of a contact of a loading curve, s."""
-    contacts, cells = len(prepared.scene.offsets), 0.0
+    contacts = len(prepared.scene.offsets)
+    cells = 0.0
     if prepared.textures.path is not None:
         cells = float(math.prod(prepared.textures.path.shape))
     found = {}

@@ -32,7 +32,9 @@ def run_in_case(prepared: PreparedCase, progress: Progress) -> tuple[Textures, V
     Samples are then cut from the strips, whose middles the body has passed. A path that is a line alone stays
     as it is. The cache keeps what was rolled. Returned are textures after running-in, and what it did.
     """
-    case, shape, textures = prepared.case, prepared.shape, prepared.textures
+    case = prepared.case
+    shape = prepared.shape
+    textures = prepared.textures
     half_space = shape.half_space(case.contact.hardness)
     job = RunningIn(
         half_space, shape.body, shape.load, passes_of(case.contact.running_in), edge_stride(shape),
@@ -40,7 +42,10 @@ def run_in_case(prepared: PreparedCase, progress: Progress) -> tuple[Textures, V
     )  # fmt: skip
     roll = partial(run_in, job=job, cache=Store(), progress=progress)
     strips = list(in_order(lambda strip: roll(strip.heights, workers=1), textures.strips, thread_count()))
-    surfaces, line, path, parts = [*strips], textures.line, textures.path, textures.parts
+    surfaces = [*strips]
+    line = textures.line
+    path = textures.path
+    parts = textures.parts
     if textures.path is not None:
         along = roll(textures.path.rows(0, textures.path.shape[0]))
         surfaces.append(along)
@@ -107,8 +112,10 @@ def _condition(prepared: PreparedCase, textures: Textures) -> tuple[float, float
     The track is as wide as the nominal patch; the stiffness is that which small vibration feels: elastic.
     """
     case, shape = prepared.case, prepared.shape
-    half_space, elastic = shape.half_space(case.contact.hardness), shape.half_space(None)
-    samples, rtol = samples_of(case, shape, textures.maps, shape.semi_axes), case.numerics.rtol
+    half_space = shape.half_space(case.contact.hardness)
+    elastic = shape.half_space(None)
+    samples = samples_of(case, shape, textures.maps, shape.semi_axes)
+    rtol = case.numerics.rtol
     contacts = [half_space.solve(shape.body - each, load=shape.load, rtol=rtol) for each in samples]
     stiffnesses = [elastic.tangent_stiffness(each.pressure) for each in contacts]
     tracks = [_track(strip.heights, shape) for strip in textures.strips]

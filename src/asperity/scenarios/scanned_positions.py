@@ -30,7 +30,8 @@ def table_stride(prepared: PreparedCase) -> int:
     are within 0.1 dB rms of those with a position in every row, of balls and wheels on textures from nearly
     smooth ones to those that the load just holds down.
     """
-    shape, closest = prepared.shape, edge_stride(prepared.shape)
+    shape = prepared.shape
+    closest = edge_stride(prepared.shape)
     if prepared.textures.defects is not None:
         return closest
     wave = prepared.case.speed / prepared.case.numerics.highest_frequency

@@ -68,7 +68,8 @@ class Scene:
         out moves freely.
         """
         at = place + np.array(self.offsets)[:count]
-        to, of = np.repeat(at, count), np.tile(at, count)
+        to = np.repeat(at, count)
+        of = np.tile(at, count)
         over = self.receptance(frequency, to, of)
         answer = over.reshape(count, count, -1).transpose(2, 0, 1) + np.eye(count) / stiffness
         first = 0
@@ -99,7 +100,9 @@ class Scene:
 
 def scene_of(case: Case) -> Scene:
     """Build what rolls and what it rolls over, of a case."""
-    body, over, highest = case.rolling, case.rolled_over, case.numerics.highest_frequency
+    body = case.rolling
+    over = case.rolled_over
+    highest = case.numerics.highest_frequency
     try:
         model = over.model(highest)
     except InputError as error:
@@ -157,7 +160,8 @@ def force_transfer(
     the contact at the static load, N/m, infinite for a rigid one; positions (n,), m from a sleeper.
     """
     f = np.atleast_1d(np.asarray(frequency, dtype=float))
-    positions, moving = np.atleast_1d(np.asarray(x, dtype=float)), f > 0.0
+    positions = np.atleast_1d(np.asarray(x, dtype=float))
+    moving = f > 0.0
     transfer = np.zeros((positions.size, f.size), dtype=complex)
     carried = wheel(f[moving]) + 1.0 / stiffness
     transfer[:, moving] = 1.0 / (carried + track.receptance(f[moving], positions, positions))

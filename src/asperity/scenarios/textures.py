@@ -96,7 +96,9 @@ def textures_of(case: Case) -> Textures:
     synthesised counts from where the record starts and depends on spectrum and seed alone, see
     `asperity.surfaces.tiles`.
     """
-    contact, spacing, margin = case.contact, case.contact.spacing, window_cells(case.contact)
+    contact = case.contact
+    spacing = case.contact.spacing
+    margin = window_cells(case.contact)
     lead = cells_over(case.settled_time * case.speed, spacing)
     recorded = cells_over(case.rolled_time * case.speed + max(case.rolling.offsets), spacing) + 1
     before = margin + lead
@@ -112,8 +114,11 @@ def textures_of(case: Case) -> Textures:
         maps = strips = _cut(case, strip, before)
         sampled = f"{count_of(len(strips), 'sample')} cut from the path"
     line = middle_line(over.strip)  # of a measured one, the run may end before the grid
-    drawn, corrugated = {"surface": over.draw, case.ROLLING: turn.draw}, ""
-    on_path, wave, size = np.zeros(len(line)), case.surface.corrugation_wavelength, case.surface.corrugation
+    drawn = {"surface": over.draw, case.ROLLING: turn.draw}
+    corrugated = ""
+    on_path = np.zeros(len(line))
+    wave = case.surface.corrugation_wavelength
+    size = case.surface.corrugation
     if size is not None and wave is not None:
         how: dict[str, Any] = {
             "bandwidth": case.surface.corrugation_bandwidth,
@@ -173,7 +178,9 @@ def other_contacts(case: Case, loads: Array) -> tuple[list[int], list[tuple[int,
     Loads (c,), N. Zero stands for the first contact, k for the k-th of the others: whose texture it bears,
     see `textures_under`, and its load, N.
     """
-    rolling, which, known = case.rolling, list[int](), [(0, float(loads[0]))]
+    rolling = case.rolling
+    which = list[int]()
+    known = [(0, float(loads[0]))]
     for contact, load in enumerate(loads):
         flats = rolling.flat is not None and {contact + 1, 1} & set(rolling.flat_contacts)
         texture = contact if rolling.has_own_texture or flats else 0
@@ -186,13 +193,15 @@ def other_contacts(case: Case, loads: Array) -> tuple[list[int], list[tuple[int,
 
 def textures_under(case: Case, contact: int, first: Textures) -> Textures:
     """Textures under a contact, from those under the first: the turn of its own body is there."""
-    rows, before = len(first.line), first.before
+    rows = len(first.line)
+    before = first.before
     if contact == 0 or not case.rolling.has_own_texture:
         return replace(first, **_defects(case, contact, first))
     grid = Grid(rows, window_cells(case.contact), case.contact.spacing)
     seed = int(np.random.SeedSequence(case.seed).generate_state(2)[1])
     turns = [_turn(case, each, grid, seed).heights for each in (0, contact)]
-    change, middle = turns[1] - turns[0], turns[0].shape[1] // 2
+    change = turns[1] - turns[0]
+    middle = turns[0].shape[1] // 2
     if case.contact.rim_cells == "covered":
         change = cell_means(np.pad(change, ((1, 1), (0, 0)), mode="wrap"))[1:-1]
     along = np.arange(rows) - before
@@ -230,7 +239,9 @@ def warn_of_textures(case: Case, shape: Geometry, textures: Textures) -> None:
             "their shape: peaks of the force come out up to a quarter too high, and levels above 1.6 kHz up "
             "to 6 dB. Take direct, or table, as the first law."
         )
-    length, window, a = case.defect_length, case.contact.window, shape.semi_axes[0]
+    length = case.defect_length
+    window = case.contact.window
+    a = shape.semi_axes[0]
     if seen and length and length + 2 * a > window:
         TruncatedContactWarning.warn(
             f"the flat is {rounded(length * 1e3)} mm long and the contact {rounded(2e3 * a)} mm, together "
@@ -262,12 +273,15 @@ def _samples(case: Case, seeds: list[int]) -> tuple[tuple[HeightMap, ...], tuple
 
 def _path(case: Case, grid: Grid, maps: tuple[HeightMap, ...], seed: int, lead: int) -> Record:
     """Texture of what is rolled over, all along the path."""
-    surface, shape, margin = case.surface, (grid.rows, grid.lines), grid.lines
+    surface = case.surface
+    shape = (grid.rows, grid.lines)
+    margin = grid.lines
     before = margin + lead
     if surface.spectrum is not None:
         lateral = surface.lateral
         if lateral is None:
-            grid, lateral = replace(grid, lines=1), math.inf
+            grid = replace(grid, lines=1)
+            lateral = math.inf
         spectrum = surface.spectrum, surface.level
         return records.spectrum_record(*spectrum, grid, lateral=lateral, seed=seed, before=before)
     if surface.line is not None:
@@ -290,7 +304,8 @@ def _path(case: Case, grid: Grid, maps: tuple[HeightMap, ...], seed: int, lead: 
 
 def _cut(case: Case, strip: Strip, before: int) -> tuple[HeightMap, ...]:
     """Cut samples from the path; of a synthesised one from a stretch that depends on no duration or speed."""
-    contact, lower = case.contact, strip.strip if isinstance(strip, Raised) else strip
+    contact = case.contact
+    lower = strip.strip if isinstance(strip, Raised) else strip
     if not isinstance(lower, LongStrip):
         return cut_from(strip, contact, case.rolled_time)
     rows = contact.samples * strip_rows(contact)
@@ -327,7 +342,9 @@ def _turn(case: Case, contact: int, grid: Grid, seed: int) -> Record:
 
 def _defects(case: Case, contact: int, textures: Textures) -> dict[str, Any]:
     """Heights (rows,), m, of a joint and of the flat of a contact's body, and of its centre over them."""
-    rolling, surface, spacing = case.rolling, case.surface, case.contact.spacing
+    rolling = case.rolling
+    surface = case.surface
+    spacing = case.contact.spacing
     position = textures.start + spacing * np.arange(len(textures.line), dtype=np.float64)
     heights, centre = np.zeros((2, len(position)))
     if surface.joint_depth is not None:
@@ -372,7 +389,8 @@ def strips_of(
     if longest < rows or narrowest < ny:
         strips = tuple(levelling.level(synthesis.from_map(maps, (rows, ny), seed)) for seed in seeds)
         return strips, "filter strips synthesised in their likeness"
-    cut, of_each = list[HeightMap](), math.ceil(len(seeds) / len(maps))
+    cut = list[HeightMap]()
+    of_each = math.ceil(len(seeds) / len(maps))
     for i in range(len(seeds)):
         heights = maps[i % len(maps)].heights
         first = round((i // len(maps) + 0.5) / of_each * (heights.shape[1] - ny))
@@ -387,7 +405,8 @@ def cut_from(path: Strip, contact: ContactKeys, duration: float, *, first: int =
 
     The path of a run of a duration, s, from row `first` on.
     """
-    rows, length = strip_rows(contact), path.shape[0] - first
+    rows = strip_rows(contact)
+    length = path.shape[0] - first
     if length < rows:
         raise InputError(
             "duration",
@@ -395,7 +414,8 @@ def cut_from(path: Strip, contact: ContactKeys, duration: float, *, first: int =
             f"at least {rows * contact.spacing:.4g} m, the strips from which filters are estimated",
             "Roll longer, or lower contact.sample_length.",
         )
-    count, spacing = contact.samples, (contact.spacing, contact.spacing)
+    count = contact.samples
+    spacing = (contact.spacing, contact.spacing)
     firsts = first + np.linspace(0, length - rows, count + 2)[1:-1].round().astype(int)
     found = tuple(levelling.level(HeightMap(path.rows(int(i), int(i) + rows), spacing)) for i in firsts)
     return found if any(strip.heights.any() for strip in found) else found[:1]
@@ -420,7 +440,8 @@ def path_of(
     middle = max((first.shape[1] - ny) // 2, 0)
     heights = first.heights[:rows, middle : middle + ny]
     heights = heights - heights.mean()
-    long, wide = first.shape[0] >= rows - run_in, first.shape[1] >= ny
+    long = first.shape[0] >= rows - run_in
+    wide = first.shape[1] >= ny
     if not (long and wide):
         if continuation not in ("mirror", "repeat"):
             like = synthesis.long_strip_like(maps, shape, seed, before=before)

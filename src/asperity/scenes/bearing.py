@@ -102,7 +102,9 @@ def _parts(case: BallBearingCase) -> list[tuple[str, Any, float]]:
 
 def prepare_bearing(case: BallBearingCase, source: str = "case") -> PreparedBearing:
     """Load the bearing at rest and lay out what is on its parts; refuse what cannot be."""
-    errors, made, of = list[InputError](), list[Raceway](), case.bearing.bearing
+    errors = list[InputError]()
+    made = list[Raceway]()
+    of = case.bearing.bearing
     *parts, balls = _parts(case)
     parts += [balls] * of.balls * (not case.has_smooth_balls)
     with PhysicsWarning.caught() as caught:
@@ -142,10 +144,13 @@ def _by_key(case: BallBearingCase, part: str, keys: AroundKeys, error: InputErro
 
 def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], preparing.Work]:
     """What will be computed, in words, and how much work it is; coarsely, as nothing is solved for that."""
-    case, turning, found = prepared.case, prepared.case.kinematics, prepared.case.static
+    case = prepared.case
+    turning = prepared.case.kinematics
+    found = prepared.case.static
     steps = round((case.settling + case.duration) / case.step)
     textured = sum(bool(getattr(case, key).given()) for key in ON)
-    runs, solutions = len(case.laws) + textured + (textured > 0), {}
+    runs = len(case.laws) + textured + (textured > 0)
+    solutions = {}
     for name, on in zip(RINGS, raceways_of(prepared, progress=None), strict=True):
         rough = np.count_nonzero((on.surface.heights + on.surface.faults).any(axis=1))
         if rough and any(Need.SCAN in spec_of(law).needs for law in case.laws):
@@ -192,7 +197,8 @@ def _cells_over_faults(prepared: PreparedBearing) -> float:
 
     A law that solves every step asks for none on a ring.
     """
-    case, found = prepared.case, 0.0
+    case = prepared.case
+    found = 0.0
     by_height = any(not spec_of(law).solved_every_step for law in case.laws)
     for number, surface in enumerate((*prepared.raceways, *prepared.balls)):
         contact, load = case.contacts[min(number, 1)]
@@ -225,7 +231,9 @@ def cage_slip(case: BallBearingCase) -> Callable[[Array], Array]:
 
 def raceways_of(prepared: PreparedBearing, progress: Progress | None) -> list[OnRaceway]:
     """What a ball feels of the inner and the outer raceway, and their scans."""
-    case, of, turning = prepared.case, prepared.case.bearing.bearing, prepared.case.kinematics
+    case = prepared.case
+    of = prepared.case.bearing.bearing
+    turning = prepared.case.kinematics
     passing = [2.0 * np.pi * abs(turning.cage - ring) for ring in (turning.inner, turning.outer)]
     each = zip(case.contacts, prepared.raceways, of.raceway_radii, passing, strict=True)
     return [
@@ -305,7 +313,8 @@ def _within_scan(
         ]
         if wider == states and duration == case.duration:
             break
-        states, duration = wider, case.duration
+        states = wider
+        duration = case.duration
     for each in caught:
         warnings.warn(each.message, stacklevel=2)
     return run
@@ -337,9 +346,11 @@ def bearing_result(
     brief: bool = False,
 ) -> xarray.DataTree:
     """Run a bearing by each of its laws and lay its result out, as `asperity.scenes.result` does others."""
-    case, began = prepared.case, time.monotonic()
+    case = prepared.case
+    began = time.monotonic()
     runs = rolled(prepared, progress)
-    heard, apart = heard_group(case, runs), Values() if brief else alone(prepared, progress)
+    heard = heard_group(case, runs)
+    apart = Values() if brief else alone(prepared, progress)
     runs = {name: steady_where_still(run) for name, run in runs.items()}
     found = list(bearing_findings(case, runs))
     warn_of_findings(found)
@@ -443,7 +454,8 @@ def motion_group(case: BallBearingCase, runs: dict[str, RolledBearing]) -> Value
 
 def heard_group(case: BallBearingCase, runs: dict[str, RolledBearing]) -> Values:
     """Lay out velocities in bands at all sensors; spectrum, envelope and lines in it at the first one."""
-    rate, signals = case.sampling_rate, [run.acceleration for run in runs.values()]
+    rate = case.sampling_rate
+    signals = [run.acceleration for run in runs.values()]
     families = case.kinematics.families
     highest = REACH * HARMONICS * max(tone for tone, _ in families.values())
     low, high = case.envelope_band or diagnostics.impulsive_band(signals[0][0], rate, highest)
@@ -545,7 +557,8 @@ def alone(prepared: PreparedBearing, progress: Progress) -> Values:
     textured = [key for key in ON if getattr(case, key).given()]
     if not textured:
         return {}
-    names, found = ["perfect surfaces", *(ON[key] for key in textured)], list[Array]()
+    names = ["perfect surfaces", *(ON[key] for key in textured)]
+    found = list[Array]()
     if len(case.faults) > 1:
         names[-1] = "the faults"
     for kept in (None, *textured):
@@ -563,7 +576,8 @@ def _deciding(apart: Values) -> list[str]:
     """Which part makes most of each band, in brackets after a blank; empty where none is known to."""
     found = [""] * len(ISO_BANDS)
     if apart:
-        names, velocities = apart[bearing.SOURCE], apart[bearing.ALONE_VELOCITY].values
+        names = apart[bearing.SOURCE]
+        velocities = apart[bearing.ALONE_VELOCITY].values
         for band, energy in enumerate(velocities.T**2):
             if np.isfinite(energy).all():
                 parts = np.append(energy[0], np.maximum(energy[1:] - energy[0], 0.0))

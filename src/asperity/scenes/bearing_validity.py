@@ -18,7 +18,8 @@ def bearing_findings(case: BallBearingCase, runs: dict[str, RolledBearing]) -> I
     """Numbers of the runs that must be in range."""
     steps = (case.settling + case.duration) / case.step
     for name, run in runs.items():
-        share, left = run.unconverged_steps / steps, run.energy.residual
+        share = run.unconverged_steps / steps
+        left = run.energy.residual
         yield Finding(
             f"share of the time steps that missed their tolerance, {name}", percent(share), "below 1 %",
             Grade.of_share(share) if share else None, "Their contact forces are too coarse.",
@@ -45,7 +46,8 @@ def out_of_place(case: BallBearingCase, law: str, run: RolledBearing) -> Iterato
         law,
     )
     azimuth = run.cage + 2.0 * np.pi * np.arange(of.balls)[:, None] / of.balls
-    radial, axial = np.cos(angle) * np.cos(azimuth), np.full(azimuth.shape, np.sin(angle))
+    radial = np.cos(angle) * np.cos(azimuth)
+    axial = np.full(azimuth.shape, np.sin(angle))
     for way, along, load in (("radial", radial, case.radial), ("axial", axial, case.axial + of.preload)):
         if load > 0.0 and along.any():
             mean = float(np.mean(np.sum(run.inner_force * along, axis=0))) / load
@@ -58,7 +60,8 @@ def _missed(runs: dict[str, RolledBearing]) -> Iterator[Finding]:
         for name in (name for name in runs if name != exact):
             off = []
             for what in ("inner_force", "outer_force", "acceleration"):
-                found, solved = getattr(runs[name], what), getattr(runs[exact], what)
+                found = getattr(runs[name], what)
+                solved = getattr(runs[exact], what)
                 varied = np.mean(solved.var(axis=1))
                 off.append(percent(float(np.sqrt(np.mean((found - solved) ** 2) / varied))))
             yield Finding(

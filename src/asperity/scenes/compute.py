@@ -138,7 +138,8 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
         """Book the time since the last part on this one."""
         nonlocal last
         now = time.perf_counter()
-        seconds[part], last = now - last, now
+        seconds[part] = now - last
+        last = now
 
     compiling.compile_kernels(progress, case.contact.rim_cells)  # not before the files are known to be right
     book("compiled functions")
@@ -177,7 +178,8 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
     for name in case.laws:
         runs[name], every = _within_scan(partial(once, name), every, name)
         book(f"law {name}")
-    bare, bare_force = in_role(Role.BARE, names()), None
+    bare = in_role(Role.BARE, names())
+    bare_force = None
     if bare is not None and isinstance(scene.over, Track) and np.ptp(first.textures.line):
         bare_force = (runs[bare] if bare in runs else once(bare, every)).contact_force
         book("what CNOSSOS-EU's sound power is of")
@@ -227,7 +229,8 @@ def _in_time(scene: Scene, case: Case, store: Store, progress: Progress) -> Moda
 
 def _passed(computed: Computed, progress: Progress) -> tuple[Array, ...]:
     """Displacement, m, and velocity, m/s, of the rail at its points (laws, p, n), under all contacts."""
-    forces, origins = computed.stacked("history"), computed.first.history_start
+    forces = computed.stacked("history")
+    origins = computed.first.history_start
     settled = forces.shape[-1] - len(computed.first.time)
     kernel, points = computed.rail.kernel, computed.case.point_positions
     parts = [

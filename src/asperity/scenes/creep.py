@@ -53,7 +53,8 @@ def smooth_with_friction(of: PreparedCase, friction: Friction) -> tuple[Friction
 
 def rough_strips(of: PreparedCase) -> list[Array]:
     """Rough strips (rows, ny) of a case about the plane that the patch feels in their middle, m."""
-    weights, nx = texture.punch_weights(of.shape.spacing, of.shape.class_axes), len(of.shape.body)
+    weights = texture.punch_weights(of.shape.spacing, of.shape.class_axes)
+    nx = len(of.shape.body)
     rough = [strip.heights for strip in of.textures.strips if strip.heights.any()]
     return [heights - stiffness.weighted_mean(middle_of(heights, nx), weights) for heights in rough]
 
@@ -64,7 +65,9 @@ def states_of(prepared: PreparedCase, count: int, progress: Progress | None = No
     From where all samples carry a light load, and the smooth contact has some cells, to where one carries
     the largest that the window holds.
     """
-    case, shape, samples = prepared.case, prepared.shape, rough_strips(prepared)
+    case = prepared.case
+    shape = prepared.shape
+    samples = rough_strips(prepared)
     if not samples:
         remedy = "Give it a file or rms, of a rail a spectrum."
         raise InputError("surface", "none, or as a line alone", "a rough surface with samples", remedy)
@@ -80,7 +83,9 @@ def states_of(prepared: PreparedCase, count: int, progress: Progress | None = No
 
 def creep_group(computed: compute.Computed) -> Values:
     """Lay out friction under the working load and in time, and the stability of the wheel on the rail."""
-    case, shape, speed = computed.case, computed.shape, computed.case.speed
+    case = computed.case
+    shape = computed.shape
+    speed = computed.case.speed
     if "creep" not in case.inner or not any(case.creep.creepage):
         return {}
     creepage = case.creep.creepage
@@ -134,7 +139,8 @@ def _squeal(computed: compute.Computed, bodies: creep.CreepingBodies) -> Values:
         return {}
 
     def receptances(omega: Complex) -> Complex:
-        frequency, middle = omega / (2.0 * np.pi), 0.5 * side.track.track.sleeper_spacing
+        frequency = omega / (2.0 * np.pi)
+        middle = 0.5 * side.track.track.sleeper_spacing
         return side.wheel(frequency) + side.rail(frequency, middle)
 
     over_creepage, over_load = bodies.slopes(computed.shape.load)

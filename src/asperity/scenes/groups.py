@@ -33,7 +33,9 @@ def surface_group(computed: Computed, *, brief: bool = False) -> Values:
 
     And, if not in brief, of the whole path spectrum and statistics.
     """
-    textures, dx, recorded = computed.textures, computed.shape.spacing[0], computed.textures.recorded
+    textures = computed.textures
+    dx = computed.shape.spacing[0]
+    recorded = computed.textures.recorded
     laid_out: Values = {}
     rows: list[dict[str, Any]] = []
     if textures.maps:
@@ -123,10 +125,12 @@ def _homogeneity(maps: tuple[HeightMap, ...]) -> Values:
 
 def _spectra(textures: Textures, path: statistics.StripSurvey) -> Values:
     """Spectra of samples and path in the rolling direction, on the samples' wavenumbers."""
-    wavenumber, laid_out = path.wavenumber, Values()
+    wavenumber = path.wavenumber
+    laid_out = Values()
     if textures.maps:
         spectra = [psd_1d(m)[1] for m in textures.maps]
-        wavenumber, first = psd_1d(textures.maps[0])[0], spectra[0]
+        wavenumber = psd_1d(textures.maps[0])[0]
+        first = spectra[0]
         laid_out[contact.PSD_SAMPLE] = np.mean([s[1:] for s in spectra if s.shape == first.shape], axis=0)
     along = np.interp(wavenumber[1:], path.wavenumber[1:], path.spectrum[1:], left=np.nan)
     return laid_out | {contact.PSD_PATH: along, contact.SURFACE_WAVENUMBER: wavenumber[1:]}
@@ -178,8 +182,11 @@ def _asked(answer: Finding) -> dict[str, Any]:
 
 def _reduced(computed: Computed, reduction: Reduction) -> Values:
     """States, and the contact at the working load, of a case with samples."""
-    shape, ensemble, approach = computed.shape, reduction.ensemble, reduction.approaches
-    working, curve = reduction.pressed.contacts[0], ensemble.curve
+    shape = computed.shape
+    ensemble = reduction.ensemble
+    approach = reduction.approaches
+    working = reduction.pressed.contacts[0]
+    curve = ensemble.curve
     states, touching = (np.where(r > 0.0, r, np.inf) for r in (ensemble.states, approach))
     hertz = np.array([shape.hertz.force(s) for s in approach])
     px, py = ((np.arange(n) - n // 2) * d for n, d in zip(shape.body.shape, shape.spacing, strict=True))
@@ -249,7 +256,9 @@ def _on_states(values: Array, rows: NDArray[np.intp], count: int) -> Array:
 
 def _hertz_only(shape: Geometry) -> Values:
     """Contact of smooth bodies, and its closed-form filter, where a case has no samples."""
-    hertz, working, dx = shape.hertz, shape.hertz.approach(shape.load), shape.spacing[0]
+    hertz = shape.hertz
+    working = shape.hertz.approach(shape.load)
+    dx = shape.spacing[0]
     approach = np.linspace(0.0, 2.0 * working, 41)[1:]
     radius = np.array([hertz.semi_axes(d)[0] for d in approach])
     wavenumber = np.geomspace(0.01, 2.0, 120) / shape.semi_axes[0]

@@ -58,7 +58,8 @@ class HammerTest:
         is weighted with the squared mobility.
         """
         frequency = _lines_in(band, count)
-        half, lines = float(track.mid_spans[0]), frequency.ravel()
+        half = float(track.mid_spans[0])
+        lines = frequency.ravel()
         struck = np.mean([each.receptance(lines, half, half) for each in track.under_one_rail], axis=0)
         mobility = 2j * np.pi * frequency * struck.reshape(frequency.shape)
         rate = _rate_in_bands(decay_rate_en15461(track, lines), mobility)
@@ -133,7 +134,8 @@ def lateral_hammer_test(track: LateralTrack, band: ArrayLike, count: int = LINES
 
     In bands by their centres (b,), Hz, each summed at a count of lines.
     """
-    frequency, half = _lines_in(band, count), 0.5 * track.track.sleeper_spacing
+    frequency = _lines_in(band, count)
+    half = 0.5 * track.track.sleeper_spacing
     lines = frequency.ravel()
     mobility = (lines * track.receptance(lines, half, half)).reshape(frequency.shape)
     return _rate_in_bands(track.decay_rate_en15461(lines), mobility)
@@ -186,7 +188,10 @@ def hammer_tests(keys: TrackKeys, track: Track, band: Array) -> tuple[HammerTest
     """
     if keys.decay_rates is None and keys.mobility is None:
         return None
-    computed, rates, lateral, laid_out = HammerTest.of_track(track, band), None, None, Values()
+    computed = HammerTest.of_track(track, band)
+    rates = None
+    lateral = None
+    laid_out = Values()
     if keys.decay_rates is not None:
         centres, vertical, lateral = read_decay_rates(keys.decay_rates)
         rates = centres, vertical
@@ -214,7 +219,8 @@ def measured_track(run: compute.Computed) -> tuple[Values, Array, Array] | None:
     found, computed, laid_out = tests
     lines = computed.frequency
     other = run.scene.first(lines.ravel()).reshape(lines.shape) + 1.0 / run.stiffness
-    longer, louder = found.longer(computed), found.louder(computed, other)
+    longer = found.longer(computed)
+    louder = found.louder(computed, other)
     known = np.isfinite(found.decay_rate) | np.isfinite(found.rms_mobility)
     laid_out[schema.MEASURED_POWER_CHANGE] = np.where(known, 10.0 * np.log10(longer * louder), np.nan)
     if schema.MEASURED_MOBILITY in laid_out:
@@ -277,11 +283,14 @@ def held_to_limits(case: Any, over_frequency: xarray.Dataset, at: Callable[[Rece
 
     Nothing of a case that does not say what type of vehicle passes.
     """
-    vehicle, passage, receiver = case.noise.vehicle, case.passage, case.noise.receiver
+    vehicle = case.noise.vehicle
+    passage = case.passage
+    receiver = case.noise.receiver
     if vehicle is None:
         return {}
     limit = railways.pass_by_limit(vehicle, passage.speed, len(passage.axles) / passage.length)
-    here, asked = (receiver.distance, receiver.height), railways.RECEIVER
+    here = (receiver.distance, receiver.height)
+    asked = railways.RECEIVER
     offset = case.noise.receiver_offset
     there = bool(np.allclose(here, asked, rtol=0.0, atol=1e-9)) and not offset
     told, wanted = ("{:g} m from the track, {:g} m high".format(*each) for each in (here, asked))
@@ -329,7 +338,8 @@ def _of_roughness(over_frequency: xarray.Dataset) -> list[Condition]:
         return []
     levels = over_frequency[schema.ROUGHNESS_LEVEL.name]
     at = {"part": "rail" if "rail" in levels["part"] else "combined"}
-    of_rail, how = levels.sel(at).values, ""
+    of_rail = levels.sel(at).values
+    how = ""
     if schema.STATED_ROUGHNESS_LEVEL.name in over_frequency:
         stated = over_frequency[schema.STATED_ROUGHNESS_LEVEL.name].sel(at).values
         of_rail = np.where(np.isfinite(stated), stated, of_rail)
@@ -360,7 +370,8 @@ def _of_decay(over_frequency: xarray.Dataset) -> Condition:
 
 def _banded(name: str, beyond: Array, bands: list[str], words: tuple[str, str], asked: str) -> Condition:
     """Condition in bands: by how much each is beyond its limit, to which side, and in what unit."""
-    outside, asked = int(np.sum(np.round(beyond, 1) > 0.0)), f"{asked} (EN ISO 3095:2013)"
+    outside = int(np.sum(np.round(beyond, 1) > 0.0))
+    asked = f"{asked} (EN ISO 3095:2013)"
     if not outside:
         return _condition(name, f"so in all {len(bands)} bands", asked, bool(bands))
     (side, unit), worst = words, int(np.argmax(beyond))

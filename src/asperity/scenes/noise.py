@@ -61,7 +61,8 @@ def wheel_label(case: Any) -> str:
 
 def findings_of_labels(case: Any) -> list[Finding]:
     """Hold track and wheel of a case to those of which CNOSSOS-EU knows the sound power."""
-    track, wheel = case.track.model(), float(wheel_label(case).split()[0])
+    track = case.track.model()
+    wheel = float(wheel_label(case).split()[0])
     least, most = cnossos.PAD_CLASSES[track_label(case)]
     rows = {  # value, and between which it may lie
         "dynamic stiffness of the rail pads, MN/m": (1e-6 * track.pad_stiffness, 1e-6 * least, 1e-6 * most),
@@ -117,7 +118,8 @@ def rolling_sound_power(
 
 def _bands(table: Table) -> tuple[NDArray[np.int64], Array]:
     """Numbers n of the bands 10^(n/10), rising, nearest to nominal or exact centres, and their levels."""
-    numbers, levels = _numbers(table[0]), np.asarray(table[1], dtype=float)
+    numbers = _numbers(table[0])
+    levels = np.asarray(table[1], dtype=float)
     order = np.argsort(numbers)
     return numbers[order], levels[order]
 
@@ -135,7 +137,8 @@ def noise(computed: compute.Computed) -> Values:
     left out of all totals. The linear law is rolled for it where the case does not name it. Nothing without
     roughness.
     """
-    case, bare = computed.case, in_role(Role.BARE, names())
+    case = computed.case
+    bare = in_role(Role.BARE, names())
     if bare is None or computed.bare_levels is None:
         return {}
     contact_filter = cnossos.nearest_contact_filter(computed.shape.load, 2.0 * case.rolling.radius)
@@ -158,7 +161,9 @@ def noise(computed: compute.Computed) -> Values:
 
 def _linear(computed: compute.Computed, contact_filter: Table | None) -> tuple[Array, Array]:
     """Sound power of CNOSSOS-EU in the bands for which there are roughness and force."""
-    case, textures, band = computed.case, computed.textures, computed.band
+    case = computed.case
+    textures = computed.textures
+    band = computed.band
     parts = textures.parts or {"rail": textures.line, "wheel": np.zeros(len(textures.line))}
     rail, wheel = (_roughness(parts[part], case.contact.spacing) for part in ("rail", "wheel"))
     transfers = cnossos.track_transfer(track_label(case)), cnossos.wheel_transfer(wheel_label(case))
@@ -174,7 +179,8 @@ def _roughness(line: Array, spacing: float) -> Table | None:
     if not np.ptp(line):
         return None
     known = cnossos.wavelengths()
-    shortest, longest = max(known.min(), 2.0 * spacing * HALF_BAND), known.max()
+    shortest = max(known.min(), 2.0 * spacing * HALF_BAND)
+    longest = known.max()
     wavelength, level = bands.band_levels_of(heightmap.Profile(line, spacing))
     inside = (wavelength > shortest / 1.05) & (wavelength < longest * 1.05)
     return wavelength[inside], np.where(np.isfinite(level), level, EMPTY)[inside]
@@ -193,7 +199,8 @@ PICOWATT = 1e-12
 
 def rail_section(case: Any, track: Track) -> RailSection:
     """Section of the rail of a case: its widths, and the area that its mass makes of steel."""
-    keys, given = case.track, case.noise.rail_radiation
+    keys = case.track
+    given = case.noise.rail_radiation
     table = None if given is None else read_ratios(given)
     area = track.mass_per_length / STEEL_DENSITY
     return RailSection(keys.rail_foot_width, keys.rail_head_width, area, table)
@@ -334,7 +341,8 @@ class _SoundPower:
 
     def changed(self, louder: Array, longer_sideways: Array | float) -> Self:
         """Power with that of rail and sleepers, and of the rail sideways, times factors, band by band."""
-        up, beside = np.array(self.up), self.beside
+        up = np.array(self.up)
+        beside = self.beside
         up[:, :2] *= louder
         if beside is not None:
             beside = np.array(beside)
@@ -386,7 +394,9 @@ def _deviation(computed: compute.Computed, density: Array, power: Array, values:
     count by their share of the power. Densities (laws, n, f) on all lines, powers (laws, n, b); NaN of what
     does not radiate.
     """
-    case, band, frequency = computed.case, computed.band, computed.frequency
+    case = computed.case
+    band = computed.band
+    frequency = computed.frequency
     time = averaging_time(len(computed.first.time), case.time_step, segment=computed.segment)
     density = np.concatenate([density, density.sum(axis=1, keepdims=True)], axis=1)
     weighted = np.concatenate([power, power.sum(axis=1, keepdims=True)], axis=1)
@@ -438,10 +448,14 @@ def _radiated(computed: compute.Computed) -> tuple[Array, Array]:
     decay rates are. Over a bay the force is spread as that of the linear contact: near the pinned-pinned
     frequency the wheel presses hardly at all at mid-span.
     """
-    case, track, stiffness = computed.case, computed.track.nominal, computed.stiffness
+    case = computed.case
+    track = computed.track.nominal
+    stiffness = computed.stiffness
     used = (computed.frequency > 0.0) & (computed.frequency <= 1.13 * computed.band[-1])
-    lines, force = computed.frequency[used], computed.force_psd[..., used]
-    exciting, known = force.sum(axis=1), dict[bytes, Array]()
+    lines = computed.frequency[used]
+    force = computed.force_psd[..., used]
+    exciting = force.sum(axis=1)
+    known = dict[bytes, Array]()
 
     def spread(x: Array) -> Array:
         """Of rail and sleepers the places are the same."""
@@ -450,10 +464,12 @@ def _radiated(computed: compute.Computed) -> tuple[Array, Array]:
         return known[at]
 
     density = np.zeros((len(force), 3, len(used)))
-    rail, top = rail_section(case, track), sleeper_top(case, track)
+    rail = rail_section(case, track)
+    top = sleeper_top(case, track)
     density[:, 0, used] = rail.power_per_force(track, lines, spread) * exciting
     density[:, 1, used] = top.power_per_force(track, lines, spread) * exciting
-    wheel, own = radiating_wheel(case), computed.scene.wheel
+    wheel = radiating_wheel(case)
+    own = computed.scene.wheel
     of_modes = np.zeros((len(force), 0 if wheel is None else len(wheel.axial), len(used)))
     if wheel is not None and own is not None:
         motion = computed.psd(computed.stacked("rolling_displacement"))[..., used]
@@ -488,7 +504,9 @@ def pass_by_group(case: Any, over_frequency: xarray.Dataset, beside: Values | No
     All axles radiate alike: where several were rolled, as their mean. What moves sideways decays along the
     rail as its own waves do, of which the group `beside` tells.
     """
-    keys, passage, band = case.noise, case.passage, over_frequency[spectra.BAND.name].values
+    keys = case.noise
+    passage = case.passage
+    band = over_frequency[spectra.BAND.name].values
     sources = _sources(case, over_frequency, beside or {})
     weights = 10.0 ** (a_weighting(band) / 10.0)
     length = max(float(np.max(source.length)) for source in sources)
@@ -496,7 +514,8 @@ def pass_by_group(case: Any, over_frequency: xarray.Dataset, beside: Values | No
     @cache
     def heard(at: pass_by.Receiver) -> tuple[Array, ...]:
         """Times, squared pressure and exposure (laws, radiators, …), and the single numbers of both."""
-        path, time = keys.sound_path(band, at), passage.times(at, length)
+        path = keys.sound_path(band, at)
+        time = passage.times(at, length)
 
         def with_sum(each: list[Array]) -> Array:
             return np.stack([*each, np.sum(each, axis=0)], axis=1)
@@ -543,7 +562,8 @@ def _sources(case: Any, over_frequency: xarray.Dataset, beside: Values) -> list[
     Waves sideways reach no farther than the longest of those up and down, but where that was measured.
     """
     power = over_frequency[schema.RADIATED_POWER_LEVEL.name].transpose("law", "radiator", "band")
-    band, decay = power["band"].values, over_frequency[schema.BAND_DECAY_RATE.name].values
+    band = power["band"].values
+    decay = over_frequency[schema.BAND_DECAY_RATE.name].values
     height = case.noise.source_heights
     up = ONE_WAVE / np.maximum(decay, ONE_WAVE / LONGEST)
     found = []

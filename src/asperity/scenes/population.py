@@ -78,7 +78,8 @@ def _stiffness(reduction: Reduction, laws: tuple[str, ...]) -> Iterator[Finding]
     if len(samples) < FEWEST_SAMPLES or not samples.all():
         return
     spread = float(samples.std(ddof=1) / samples.mean())
-    place, mean = _level(spread), _level(spread / math.sqrt(len(samples)))
+    place = _level(spread)
+    mean = _level(spread / math.sqrt(len(samples)))
     enough = "One stiffness is enough" if place <= EFFECT[0] else "One stiffness is not enough"
     yield _answer(
         "Is one contact stiffness enough for the path?",
@@ -125,13 +126,15 @@ def _maps(computed: Computed, reduction: Reduction, laws: tuple[str, ...]) -> It
             "deviation) beyond what places of one map do."
         )
     brief = f"maps differ by {beyond:.1f} dB in stiffness"
-    value, effect = f"{len(maps)} maps, p = {rounded(p, 2)}", beyond if apart else 0.0
+    value = f"{len(maps)} maps, p = {rounded(p, 2)}"
+    effect = beyond if apart else 0.0
     yield _answer("Are the measured maps one population?", value, answer, effect, brief, laws)
 
 
 def _along_path(computed: Computed) -> Iterator[Finding]:
     """Whether the roughness of the path is the same all along it."""
-    textures, patch = computed.textures, 2.0 * computed.shape.semi_axes[0]
+    textures = computed.textures
+    patch = 2.0 * computed.shape.semi_axes[0]
     levels = levels_along(textures.line[textures.recorded], patch / computed.shape.spacing[0])
     if levels is None:
         return
@@ -144,7 +147,8 @@ def _along_path(computed: Computed) -> Iterator[Finding]:
             "differs by as much."
         )
     brief = f"roughness varies by {beyond:.1f} dB along the path"
-    value, effect = f"{len(levels)} parts, p = {rounded(p, 2)}", beyond if apart else 0.0
+    value = f"{len(levels)} parts, p = {rounded(p, 2)}"
+    effect = beyond if apart else 0.0
     yield _answer("Is the path the same all along?", value, answer, effect, brief, tuple(computed.case.laws))
 
 
@@ -172,7 +176,8 @@ def told_apart(groups: Sequence[Array]) -> tuple[float, float, bool]:
     between groups.
     """
     sizes = np.array([len(group) for group in groups])
-    total, count = sizes.sum(), len(groups)
+    total = sizes.sum()
+    count = len(groups)
     means = np.array([group.mean() for group in groups])
     within = sum(float(np.sum((g - m) ** 2)) for g, m in zip(groups, means, strict=True)) / (total - count)
     between = float(np.sum(sizes * (means - np.sum(sizes * means) / total) ** 2)) / (count - 1)

@@ -56,10 +56,14 @@ def computed_result(
     where nothing depends on it.
     """
     computed = compute(prepared, progress)
-    case, scene, side = computed.case, computed.scene, sideways.sideways_of(computed)
+    case = computed.case
+    scene = computed.scene
+    side = sideways.sideways_of(computed)
     over_frequency = spectra_group(computed, None if side is None else side.power)
-    choice, population = validity.choice_of(computed, brief=brief), answers(computed)
-    found, own = validity.findings(computed, population, choice), Values()
+    choice = validity.choice_of(computed, brief=brief)
+    population = answers(computed)
+    found = validity.findings(computed, population, choice)
+    own = Values()
     in_bands = group(over_frequency)
     losses: Values = {}
     sources = METHOD + (ROUGH_CONTACT if computed.reduction else ()) + BANDS + (EXPECTED if choice else ())
@@ -79,7 +83,8 @@ def computed_result(
         sources += creep.SOURCES if creeps else ()
         noise.warn_of_silence(case)
     warn_of_findings(found)
-    textures, reduced = surface_group(computed, brief=brief), contact_group(computed, found, population)
+    textures = surface_group(computed, brief=brief)
+    reduced = contact_group(computed, found, population)
     expected = {provenance.EXPECTED_ERRORS: choice.entries()} if choice else {}
     scenario = scenario_group(case, _numerics(computed, choice, losses)) | expected
     laid_out = scenario | textures | reduced | rolling_group(computed) | over_frequency | own
@@ -187,7 +192,10 @@ def _of_structure(computed: Computed) -> Iterator[tuple[str, str]]:
 
 def rolling_group(computed: Computed) -> Values:
     """Lay out what was recorded in time: each contact, what it is over, each body, energy."""
-    case, scene, stack, first = computed.case, computed.scene, computed.stacked, computed.first
+    case = computed.case
+    scene = computed.scene
+    stack = computed.stacked
+    first = computed.first
     runs = computed.runs.values()
     lost = [[duration for _, duration in run.flights] for run in runs]
     over, rolls = (getattr(schema, name.upper()) for name in case.DISPLACEMENTS)
@@ -233,7 +241,9 @@ def spectra_group(computed: Computed, side: noise.SidewaysPower | None = None) -
     With how sure the levels are, and how far the laws are from each other. The sound power of what moves
     sideways, where something does, is that of `asperity.scenes.sideways.Sideways.power`.
     """
-    scene, forces, shown = computed.scene, computed.stacked("contact_force"), computed.shown
+    scene = computed.scene
+    forces = computed.stacked("contact_force")
+    shown = computed.shown
     density = computed.force_psd.mean(axis=1)
     level = computed.levels(density)
     laid_out: Values = {
@@ -274,7 +284,9 @@ def held_values(computed: Computed) -> tuple[Array, Array, Array]:
 
     By the first contact: others of one path hold much the same.
     """
-    case, run, band = computed.case, computed.first, computed.band
+    case = computed.case
+    run = computed.first
+    band = computed.band
     time = bands.averaging_time(len(run.time), case.time_step, segment=computed.segment)
     seen = bands.values_seen(run.contact_force[0], case.time_step, band)
     record, (begin, end) = float(run.time[-1]), run.positions[0, [0, -1]]

@@ -67,7 +67,8 @@ class Orders:
 
 def orders_of(prepared: PreparedCase) -> Orders | None:
     """Orders of what rolls where its line was measured around; None elsewhere, or of less than a turn."""
-    case, around = prepared.case, prepared.textures.parts.get("wheel")
+    case = prepared.case
+    around = prepared.textures.parts.get("wheel")
     if case.rolling.line is None or around is None:
         return None
     rows = points_of_a_turn(case)

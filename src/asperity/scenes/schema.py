@@ -335,7 +335,8 @@ _effects = partial(Entry, "effects", condition="where it was asked what helps")
 _changed = partial(_effects, missing=f"the case cannot take this change; or {SILENT}")
 EFFECT_VARIANT = _effects("variant", "1", "what is changed of the case")
 EFFECT_RADIATOR = _effects("radiator", "1", "what radiates by its vibration")
-_A, _OF_A = RADIATED_POWER_LEVEL_A, "level with the change less that of the case as it is"
+_A = RADIATED_POWER_LEVEL_A
+_OF_A = "level with the change less that of the case as it is"
 EFFECT_LEVEL = _changed("level(radiator)", _A.units, _A.long_name)
 EFFECT = _changed("effect(variant, radiator)", "dB", _OF_A)
 _CHANCE = "standard deviation of the level by the chance of its records"
@@ -409,11 +410,9 @@ _creep, _creep_fact = (
 )
 _creeping = partial(_rolling, condition=_CREEPS)
 WAYS = "along", "to the field side"
-_WAY, _OF_WHEEL, _HEAT = (
-    "direction of a force on the wheel",
-    "friction force on the wheel",
-    "heat of friction",
-)
+_WAY = "direction of a force on the wheel"
+_OF_WHEEL = "friction force on the wheel"
+_HEAT = "heat of friction"
 ROLLING_WAY, CREEP_WAY = (each("way", "1", _WAY) for each in (_creeping, _creep))
 FRICTION_FORCE = _creeping("friction_force(law, contact, way, time)", "N", f"{_OF_WHEEL}, quasi-steady")
 FRICTION_POWER = _creeping("friction_power(law, contact, time)", "W", f"{_HEAT}, quasi-steady")

@@ -39,7 +39,8 @@ class Sideways:
     @cached_property
     def track(self) -> lateral_rail.LateralTrack:
         """The track sideways, of equal bays."""
-        keys, track = self.computed.case.track, self.computed.track.nominal.regular
+        keys = self.computed.case.track
+        track = self.computed.track.nominal.regular
         return self.computed.case.sideways.model(track, keys.rail_foot_width)
 
     @cached_property
@@ -108,7 +109,8 @@ class Sideways:
 
         The second over the first is S_F, and changes little within a line (`asperity.radiation.wheel`).
         """
-        computed, middle = self.computed, 0.5 * self.track.track.sleeper_spacing
+        computed = self.computed
+        middle = 0.5 * self.track.track.sleeper_spacing
         normal, _ = self.stiffness
         own = np.abs(1.0 / normal + self.track.track.receptance(self.lines, middle, middle))
         motion = computed.psd(computed.stacked("rolling_displacement"))
@@ -148,7 +150,9 @@ class Sideways:
         Under both forces, and under the lateral one alone. None of a wheel whose modes are unknown. Rigid
         motion up and down is one nodal diameter around the tread, along the axle that of a rigid disc.
         """
-        modes, case, fine = self.computed.scene.modes, self.computed.case, self.fine[0]
+        modes = self.computed.scene.modes
+        case = self.computed.case
+        fine = self.fine[0]
         laws, lines = self.seen_of_all.shape
         if modes is None:
             return np.zeros((2, laws, 0, lines))
@@ -160,7 +164,8 @@ class Sideways:
         answers = modal.modal_answers(fine, modes.natural_frequencies, modes.damping_ratios).T
         rigid = 1.0 / (case.rolling.contact_mass * omega) ** 2
         numbers = np.concatenate([[1, 0], modes.nodal_diameters])
-        disc, tread = np.append([0.0, 1.0], modes.disc), np.append([math.sqrt(0.5), 0.0], modes.tread)
+        disc = np.append([0.0, 1.0], modes.disc)
+        tread = np.append([math.sqrt(0.5), 0.0], modes.tread)
         radiator = RadiatingWheel(case.rolling.radius, case.noise.wheel_width, numbers, disc, tread)
 
         def radiated(radially: float) -> Array:
@@ -198,7 +203,8 @@ def sideways_group(found: Sideways) -> Values:
     """Lay out receptances and decay sideways, the lateral force of each law, and its grip."""
     computed = found.computed
     case, band = computed.case, computed.band
-    contacts, limit = len(computed.scene.offsets), case.sideways.friction * computed.shape.load
+    contacts = len(computed.scene.offsets)
+    limit = case.sideways.friction * computed.shape.load
     step = found.lines[1] - found.lines[0]
 
     def levels(density: Array) -> Array:
@@ -206,11 +212,13 @@ def sideways_group(found: Sideways) -> Values:
         return computed.levels(found.on_all_lines(density))
 
     density = np.mean(found.spread * found.squares, axis=0) * found.seen[1]  # of each contact, N²/Hz
-    lateral, of_each = density.sum(axis=1) / contacts, np.sqrt(density.sum(axis=-1) * step)
+    lateral = density.sum(axis=1) / contacts
+    of_each = np.sqrt(density.sum(axis=-1) * step)
     with np.errstate(divide="ignore"):
         slips = np.vectorize(math.erfc)(limit / (math.sqrt(2.0) * of_each)).mean(axis=1)
     frequency = np.geomspace(LOWEST_FREQUENCY, case.numerics.highest_frequency, FREQUENCIES)
-    rail, wheel = found.rail(frequency, 0.5 * found.track.track.sleeper_spacing), found.wheel(frequency)
+    rail = found.rail(frequency, 0.5 * found.track.track.sleeper_spacing)
+    wheel = found.wheel(frequency)
     free = 1.0 / found.answers[0, 0]  # vertical force per height of a contact that is free sideways
     linear = np.mean(np.abs([lateral_rail.vertical_change(found.answers) * free, free]) ** 2, axis=1)
     coupling = np.subtract(*levels(line_means(linear, *found.fine)))

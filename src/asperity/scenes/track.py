@@ -60,8 +60,12 @@ def linear_reference(computed: compute.Computed) -> tuple[Array, Array]:
     the speed is far below that of waves in the rail, and away from the pinned-pinned frequency, whose peak
     motion splits and lowers; without the tones of the sleepers.
     """
-    case, textures, scene, track = computed.case, computed.textures, computed.scene, computed.track
-    position, frequency = computed.first.positions[0], computed.frequency
+    case = computed.case
+    textures = computed.textures
+    scene = computed.scene
+    track = computed.track
+    position = computed.first.positions[0]
+    frequency = computed.frequency
 
     def passed(line: Array) -> Array:
         """PSD of a line at the contact."""
@@ -69,14 +73,17 @@ def linear_reference(computed: compute.Computed) -> tuple[Array, Array]:
         return computed.psd(at)
 
     texture = passed(textures.followed)
-    force, above = np.zeros_like(texture), frequency > 0.0
-    lines, stiffness = frequency[above], computed.stiffness
+    force = np.zeros_like(texture)
+    above = frequency > 0.0
+    lines = frequency[above]
+    stiffness = computed.stiffness
     if len(scene.offsets) == 1:
         square = mean_square_transfer(lines, scene.first, track, stiffness, track.places(PLACES))
         force[above] = square * texture[above]
         return force, texture
     turning = textures.parts.get("wheel", np.zeros_like(textures.line))
-    path, own = passed(textures.followed - turning), passed(turning)
+    path = passed(textures.followed - turning)
+    own = passed(turning)
     count = min(PLACES * track.cell_bays, MOST_PLACES)
     places = track.period * (np.arange(count) + 0.5) / count
     along, each = _coupled(scene, stiffness, case.speed, places, lines)
@@ -109,11 +116,13 @@ def _coupled(scene: Scene, stiffness: float, speed: float, places: Array, freque
 
 def _roughness(computed: compute.Computed) -> Values:
     """Band levels of rail and wheel over wavelength, without flat and joint."""
-    textures, spacing = computed.textures, computed.case.contact.spacing
+    textures = computed.textures
+    spacing = computed.case.contact.spacing
     lines = {**textures.parts, "combined": textures.line}
     bands = {name: band_levels_of(Profile(line, spacing)) for name, line in lines.items()}
     wavelength = bands["combined"][0]
-    averaged, entry = spectra.averaging_time(len(textures.line), spacing), schema.SURFACE_BAND_LENGTH_PRODUCT
+    averaged = spectra.averaging_time(len(textures.line), spacing)
+    entry = schema.SURFACE_BAND_LENGTH_PRODUCT
     product = spectra.band_product(1.0 / wavelength, averaged)
     stated = stated_levels(computed.case, list(bands), wavelength)
     said: Values = {schema.STATED_ROUGHNESS_LEVEL: stated} if np.isfinite(stated).any() else {}
@@ -163,7 +172,8 @@ def _stated(spectrum: Any, level: float, wavelength: Array) -> Array:
 
 def tones(computed: compute.Computed) -> Values:
     """Frequencies that speed, track and wheel have of themselves; of spread supports that of the wheel."""
-    case, pinned = computed.case, computed.track.pinned_pinned_frequency
+    case = computed.case
+    pinned = computed.track.pinned_pinned_frequency
     turns: Values = {schema.WHEEL_REVOLUTION_FREQUENCY: case.speed / (2.0 * math.pi * case.rolling.radius)}
     if computed.track.continuous:
         return turns
@@ -192,7 +202,9 @@ def track_group(computed: compute.Computed, losses: Values) -> Values:
 
     None of it depends on what has rolled.
     """
-    track, in_time, load = computed.track, computed.rail.kernel.track, computed.shape.load
+    track = computed.track
+    in_time = computed.rail.kernel.track
+    load = computed.shape.load
     frequency = np.geomspace(LOWEST_FREQUENCY, computed.case.numerics.highest_frequency, FREQUENCIES)
     half = float(track.mid_spans[0])
     midspan, support = track.receptance(frequency, [half, 0.0], [half, 0.0])
@@ -225,7 +237,8 @@ def _bays(track: Track, frequency: Array) -> Values:
     """Lay out how bays differ, and their mid-spans beside one of equal bays; nothing where they do not."""
     if not track.bays:
         return {}
-    half, spans = 0.5 * track.sleeper_spacing, track.mid_spans
+    half = 0.5 * track.sleeper_spacing
+    spans = track.mid_spans
     squares = np.abs(track.receptance(frequency, spans, spans)) ** 2
     return {
         schema.BAY: 1 + np.arange(track.cell_bays),
@@ -308,11 +321,13 @@ def described_losses(losses: Values) -> Iterator[tuple[str, str]]:
 
 def planned_track(prepared: PreparedCase) -> list[tuple[str, str]]:
     """Characteristic numbers of a track that is rolled over, in words, and what is known of its sound."""
-    case, track = prepared.case, prepared.scene.over
+    case = prepared.case
+    track = prepared.scene.over
     if not isinstance(track, Track):
         return []
     _, stiffness = working_point(case.contact, prepared.shape, None)
-    scene, highest = prepared.scene, case.numerics.highest_frequency
+    scene = prepared.scene
+    highest = case.numerics.highest_frequency
     losses = loss_factor_error(track, scene.first, stiffness, highest)
     bands = spectra.third_octave_bands(LOWEST, highest)[0]
     doubts = findings_of_losses(losses) + measured.findings_of_measured(case.track, track.nominal, bands)
@@ -346,7 +361,8 @@ def _rows_of_bays(track: Track) -> Iterator[tuple[str, str]]:
     """How bays differ, in words; nothing where they do not."""
     if track.bays is None:
         return
-    lengths, count = track.sleeper_spacing * track.bays.lengths, track.cell_bays
+    lengths = track.sleeper_spacing * track.bays.lengths
+    count = track.cell_bays
     parts = [f"{between(rounded(lengths.min()), rounded(lengths.max()))} m long"]
     for name in ("pad", "ballast"):
         stiffness = 1e-6 * getattr(track, f"{name}_stiffness") * np.array(getattr(track.bays, name))

@@ -96,7 +96,8 @@ def beyond(
 ) -> Iterator[Finding]:  # fmt: skip
     """A share of a law that is warned of, and out of range, above limits; None where it is below both."""
     if (grade := _grade(share, limits)) is not None:
-        value, limit = percent(share), f"up to {percent(limits[0])}"
+        value = percent(share)
+        limit = f"up to {percent(limits[0])}"
         told = brief.format(value)
         yield Finding(f"{quantity}, {law}", value, limit, grade, meaning, remedy, told, (law,), warned=warned)
 
@@ -135,7 +136,8 @@ def load_missed(what: str, of: str, mean: float, law: str) -> Iterator[Finding]:
 def _of_motion(computed: Computed) -> Iterator[Finding]:
     """Whether motions are possible: energies that balance, mean forces that are loads, small deflections."""
     left = {law: run.energy.residual for law, run in computed.runs.items()}
-    main, worst = next(iter(left)), max(left, key=left.__getitem__)
+    main = next(iter(left))
+    worst = max(left, key=left.__getitem__)
     for law in dict.fromkeys((main, worst)):
         if law == main or left[law] > RESIDUAL:
             yield energy_left(law, left[law], "numerics.time_step")
@@ -163,7 +165,8 @@ def _displaced(computed: Computed, law: str, run: RolledBodies) -> Iterator[Find
             law,
             warned=True,
         )
-    radius, remedy = computed.case.rolling.radius, "Check heights, load, springs and supports."
+    radius = computed.case.rolling.radius
+    remedy = "Check heights, load, springs and supports."
     yield from beyond(
         f"approach of the surfaces over the radius of the {computed.case.ROLLING}",
         float(run.relative_displacement.max()) / radius,
@@ -263,7 +266,8 @@ def _slope(prepared: PreparedCase) -> Finding:
 
 
 def _isolated(case: Case, share: float) -> Finding:
-    least, surface = CELLS_PER_WAVE * case.contact.spacing, case.surface
+    least = CELLS_PER_WAVE * case.contact.spacing
+    surface = case.surface
     ways = [f"surface.shortest = {_um(least)} leaves out the waves that this one does not resolve"]
     known = surface.shortest or (2.0 * surface.pixel if surface.pixel is not None else None)
     if known is not None and known < least:
@@ -286,7 +290,8 @@ def _whole_cells(prepared: PreparedCase, pressed: PressedSamples) -> Iterator[Fi
     solving = tuple(law for law in case.laws if spec_of(law).solved_every_step)
     if not solving or case.contact.rim_cells != "whole":
         return
-    missed, within = rim_cells.stiffness_missed(shape), rim_cells.roughness_within(pressed, shape)
+    missed = rim_cells.stiffness_missed(shape)
+    within = rim_cells.roughness_within(pressed, shape)
     if within < rim_cells.SMOOTH:
         cells = rounded(min(shape.semi_axes) / case.contact.spacing, 2)
         level = 20.0 * math.log10(1.0 + missed)
@@ -387,7 +392,8 @@ def _start_of_record(over_frequency: xarray.Dataset) -> Iterator[str]:
     low = -10.0 * np.log10(1.0 - start)
     if (much := start > MOST_START).any():
         where = ", ".join(nominal_frequency(float(band)) for band in over_frequency[spectra.BAND.name][much])
-        size, held = f"{float(low.max()):.1f} dB", "resonances there have not built up when the record starts"
+        size = f"{float(low.max()):.1f} dB"
+        held = "resonances there have not built up when the record starts"
         yield f"Levels at {where} are up to {size} low: {held}; a longer settling helps"
 
 
@@ -409,7 +415,8 @@ def _doubts(computed: Computed, found: Sequence[Finding]) -> Iterator[str]:
 def compared_bands(over_frequency: xarray.Dataset) -> np.ndarray:
     """Bands in which laws are compared: those whose levels say something."""
     low, high = COMPARED
-    band, start = over_frequency[spectra.BAND.name], over_frequency.get(spectra.START_SHARE.name, 0.0)
+    band = over_frequency[spectra.BAND.name]
+    start = over_frequency.get(spectra.START_SHARE.name, 0.0)
     inside = (band >= low * 0.9) & (band <= high * 1.1)
     return np.asarray(inside & ~say_little(over_frequency[spectra.BAND_TIME_PRODUCT.name], start))
 
@@ -441,7 +448,8 @@ def _varies(run: RolledBodies) -> str:
 
 def _contact(run: RolledBodies, body: str) -> str:
     """Say how often the contact of a body is lost; of several contacts, which, and how much of the time."""
-    share, one = 1.0 - run.in_contact.mean(axis=-1), len(run.body) == 1
+    share = 1.0 - run.in_contact.mean(axis=-1)
+    one = len(run.body) == 1
     starts, _ = run.flights[0]
     if one and not len(starts):
         return f"The {body} never loses contact"

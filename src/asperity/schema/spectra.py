@@ -39,7 +39,8 @@ CONTACT_FORCE_LEVEL = _level("contact_force_level(law, contact, band)", "dB re 1
 
 
 def _difference(to: str, law: str, condition: str) -> Entry:
-    place, long_name = f"force_level_difference_to_{to}(law, band)", f"force level over that of {law}"
+    place = f"force_level_difference_to_{to}(law, band)"
+    long_name = f"force level over that of {law}"
     return _level(place, "dB", long_name, condition, attributes=("reference",))
 
 

@@ -46,7 +46,8 @@ def forms() -> dict[str, dict[str, Any]]:
 
 
 def _form(model: type[any_case.AnyCase]) -> dict[str, Any]:
-    whole, sections = model.TITLE.rstrip("."), model.sections()
+    whole = model.TITLE.rstrip(".")
+    sections = model.sections()
     shown = [
         each
         for each in any_case.entries(model)

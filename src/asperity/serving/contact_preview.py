@@ -143,8 +143,10 @@ def _prepared(case: Case) -> PreparedCase:
 def scene_surface(case: Case) -> PressedSurface:
     """The first sample of a case under its body."""
     prepared = _prepared(case)
-    shape, maps = prepared.shape, prepared.textures.maps
-    heights, source = np.zeros_like(shape.body), "smooth bodies: no sample is given"
+    shape = prepared.shape
+    maps = prepared.textures.maps
+    heights = np.zeros_like(shape.body)
+    source = "smooth bodies: no sample is given"
     if maps:
         cells = (shape.body.shape[0], shape.body.shape[1])
         weights = punch_weights(shape.spacing, shape.semi_axes)
@@ -169,7 +171,8 @@ def raceway_surface(case: BearingUnderLoad) -> PressedSurface:
 
 def _thinned(pressed: PressedSurface) -> tuple[Array, Array, int]:
     """Heights and gap (nx, ny), m, and how many cells apart their points are."""
-    heights, body = pressed.heights, pressed.shape.body
+    heights = pressed.heights
+    body = pressed.shape.body
     step = math.ceil(max(heights.shape) / MOST_CELLS_SHOWN)
     first = [(n // 2) % step for n in heights.shape]  # the middle cell stays
     thinned = heights[first[0] :: step, first[1] :: step]

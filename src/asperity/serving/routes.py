@@ -40,7 +40,8 @@ class Server:
     def __init__(self, folder: Path) -> None:
         self.surfaces, self.runs = folder / "surfaces", folder / "runs"
         self.jobs = Jobs()
-        self.contacts, self.files = Questions(CONTACT_SECONDS), Questions(FILE_SECONDS)
+        self.contacts = Questions(CONTACT_SECONDS)
+        self.files = Questions(FILE_SECONDS)
 
     @asynccontextmanager
     async def alive(self, app: Starlette) -> AsyncIterator[None]:
@@ -223,7 +224,8 @@ class Server:
 
         The report is written when it is asked for first.
         """
-        folder, name = self._run(request), request.path_params["name"]
+        folder = self._run(request)
+        name = request.path_params["name"]
         done = stored_runs.is_own(folder, stored_runs.RESULT)
         if name == stored_runs.REPORT and done and not (folder / name).exists():
             await self.files.ask("report", path=_result_of(folder))

@@ -60,7 +60,8 @@ def _force(tree: DataTree) -> dict[str, Any] | None:
     """Force of each law, sample by sample over the texture that is kept."""
     if not data.present(tree, CONTACT_FORCE, TIME, POSITION):
         return None
-    time, position = data.values(tree, TIME), data.values(tree, POSITION)
+    time = data.values(tree, TIME)
+    position = data.values(tree, POSITION)
     count = min(int(np.searchsorted(position - position[0], _watched(tree), side="right")), PIECE, len(time))
     pieces = {law: data.of_law(tree, CONTACT_FORCE, law)[:count] for law in data.laws(tree, CONTACT_FORCE)}
     return {
@@ -86,7 +87,8 @@ def _texture(tree: DataTree) -> dict[str, Any] | None:
         dx, dy = (_spacing(data.values(tree, entry)) for entry in (contact.PATH_X, contact.PATH_Y))
     elif data.present(tree, contact.LINE):
         heights = data.values(tree, contact.LINE)[:LINE_POINTS, None]
-        dx, dy = _spacing(data.values(tree, contact.DISTANCE)), 0.0
+        dx = _spacing(data.values(tree, contact.DISTANCE))
+        dy = 0.0
     else:
         return None
     return {"shape": list(heights.shape), "dx": dx, "dy": dy, "heights": heights - heights.mean()}

@@ -47,7 +47,8 @@ def serve_folder(folder: Path, port: int) -> None:
     listener = _listener(port)
     with listener, alone_in(folder):
         (folder / "runs").mkdir(exist_ok=True)
-        token, port = new_token(), listener.getsockname()[1]
+        token = new_token()
+        port = listener.getsockname()[1]
         app = Guard(Server(folder).app(), token, port)
         config = uvicorn.Config(
             app, log_config=None, log_level="critical", access_log=False, server_header=False,

@@ -16,7 +16,10 @@ from asperity.errors import InputError, printable
 from asperity.files import amount, require_space, write_bytes
 from asperity.text_files import read_text
 
-CASE, RESULT, REPORT, SOUNDS = "case.toml", "run.nc", "report.html", "sounds"
+CASE = "case.toml"
+RESULT = "run.nc"
+REPORT = "report.html"
+SOUNDS = "sounds"
 OUTCOME = "outcome.json"
 _FACTS = "run.json"
 _IDENTIFIER = re.compile(r"[0-9a-f]{16}")
@@ -77,7 +80,8 @@ def remove_unnamed(root: Path, runs: Path) -> None:
 
 def keep_run(root: Path, case: str, *, kind: str, name: str, changed: str) -> str:
     """Make the folder of a new run with its case in TOML, and what a list of runs says of it."""
-    folder, now = root / secrets.token_hex(8), datetime.now().astimezone()
+    folder = root / secrets.token_hex(8)
+    now = datetime.now().astimezone()
     facts = {
         "kind": kind,
         "name": printable(" ".join(name.split()))[:LONGEST_NAME] or f"{now:%d %b, %H:%M:%S}",
@@ -111,7 +115,8 @@ def _read(folder: Path, name: str) -> dict[str, str]:
 
 def case_of_run(folder: Path) -> str:
     """Text of the case of a run; an `InputError` if it is missing or damaged."""
-    source, allowed = f"the case of {folder.name}", "a case"
+    source = f"the case of {folder.name}"
+    allowed = "a case"
     if (folder / CASE).exists() and not is_own(folder, CASE):
         raise InputError(source, "a link to another file", allowed)
     return read_text(folder / CASE, source, allowed, largest=LARGEST_CASE)
@@ -175,7 +180,8 @@ async def receive(
             allowed = f"at most {amount(LARGEST_UPLOAD)}"
             raise TooLarge("the file", f"{amount(size)} or more", allowed, remedy)
         if size > left:
-            allowed, remedy = f"{amount(LARGEST_TOTAL)} of them", "Delete those that no run uses."
+            allowed = f"{amount(LARGEST_TOTAL)} of them"
+            remedy = "Delete those that no run uses."
             raise TooLarge("the surfaces kept", "more surfaces", allowed, remedy)
 
     check(announced or 1)

@@ -134,7 +134,8 @@ _QUESTIONS = {
 
 def answer_all() -> None:
     """Answer what comes on standard input until it ends, in the process of a `Questions`."""
-    answers, questions = _own_output(), SimpleQueue[str | None]()
+    answers = _own_output()
+    questions = SimpleQueue[str | None]()
     with suppress(OSError, ValueError):
         limit_process(MEMORY)
     warnings.simplefilter("ignore")  # runs tell theirs; here nobody reads them
@@ -177,7 +178,9 @@ def _why(error: Exception, memory: str) -> str:
 
 def roll_run() -> None:
     """Roll the case in the folder that is the last argument, in a process of `Jobs`."""
-    told, message, last = _own_output(), "", 0.0
+    told = _own_output()
+    message = ""
+    last = 0.0
     end_with_parent()
     if hasattr(os, "nice"):
         os.nice(NICENESS)

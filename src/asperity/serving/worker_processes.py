@@ -43,12 +43,15 @@ class WorkerProcess:
     def __init__(self, process: asyncio.subprocess.Process) -> None:
         assert process.stdin is not None
         assert process.stdout is not None
-        self.process, self.stdin, self.stdout = process, process.stdin, process.stdout
+        self.process = process
+        self.stdin = process.stdin
+        self.stdout = process.stdout
 
     @classmethod
     async def start(cls, function: str, *words: str) -> "WorkerProcess":
         """Start it."""
-        code, pipe = _START.format(function=function), asyncio.subprocess.PIPE
+        code = _START.format(function=function)
+        pipe = asyncio.subprocess.PIPE
         with no_interrupt_for_children():
             process = await asyncio.create_subprocess_exec(
                 sys.executable, "-c", code, json.dumps(sys.path), *words,
@@ -133,7 +136,8 @@ class Job:
         """How far it is."""
         if self.worker is None:
             return {"state": "waiting", "message": "waits for the run before it"}
-        spent, rest = time.monotonic() - self.since, self.total - self.done
+        spent = time.monotonic() - self.since
+        rest = self.total - self.done
         known = self.done > self.first and rest > 0
         left = spent * rest / (self.done - self.first) if known else None
         far = {"message": self.message, "done": self.done, "total": self.total, "left": left}
@@ -142,7 +146,8 @@ class Job:
     async def roll(self) -> None:
         """Roll it, and keep what became of it."""
         discard(self.folder / OUTCOME)
-        self.worker, report = await WorkerProcess.start("roll_run", str(self.folder)), {}
+        self.worker = await WorkerProcess.start("roll_run", str(self.folder))
+        report = {}
         while "state" not in report and (line := await self.worker.stdout.readline()):
             report = json.loads(line)
             if "state" not in report:
@@ -155,7 +160,9 @@ class Job:
     def hear(self, done: int, total: int, message: str) -> None:
         """Take down what its process reports."""
         if message != self.message:
-            self.message, self.first, self.since = message, done, time.monotonic()
+            self.message = message
+            self.first = done
+            self.since = time.monotonic()
         self.done, self.total = done, total
 
 
@@ -176,7 +183,8 @@ class Jobs:
         if folder.name in self._jobs:
             return
         if len(self._jobs) > MOST_WAITING:
-            received, allowed = f"{count_of(len(self._jobs), 'run')} that wait", f"at most {MOST_WAITING}"
+            received = f"{count_of(len(self._jobs), 'run')} that wait"
+            allowed = f"at most {MOST_WAITING}"
             raise InputError("the runs", received, allowed, "Wait for some, or cancel them.")
         job = self._jobs[folder.name] = Job(folder)
         job.task = asyncio.create_task(self._roll(job))

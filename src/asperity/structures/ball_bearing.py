@@ -48,8 +48,10 @@ STEEL = MATERIALS["steel"]
 _CONFORMITY = Number(above=0.5, at_most=1.0)
 _USUAL = "0.505 to 0.7: grooves lie between"
 _GAP, _LOADS = "-1 mm to 10 mm: bearings lie between", "0 N to 100 MN: bearings carry less"
-_ANGLE, _ANGLES = Quantity("rad", at_least=0), "0 deg to 80 deg: balls touch both grooves between"
-_PRESSURE, _HARD = Quantity("Pa", above=0), "1 MPa to 100 GPa: no solid is as soft, or as hard"
+_ANGLE = Quantity("rad", at_least=0)
+_ANGLES = "0 deg to 80 deg: balls touch both grooves between"
+_PRESSURE = Quantity("Pa", above=0)
+_HARD = "1 MPa to 100 GPa: no solid is as soft, or as hard"
 
 
 @dataclass(frozen=True)
@@ -241,7 +243,8 @@ class BallBearing:
 
     def _contact(self, conformity: float, raceway: float) -> Hertz:
         """Contact in a groove: normal to its surface a raceway of radius R has R/cos α along the path."""
-        modulus, D = contact_modulus(self.material, self.ball_material), self.ball_diameter
+        modulus = contact_modulus(self.material, self.ball_material)
+        D = self.ball_diameter
         return in_groove(modulus, 0.5 * D, conformity * D, raceway / math.cos(self.free_angle))
 
     @property

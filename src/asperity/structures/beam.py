@@ -154,7 +154,8 @@ class Beam(_Uniform):
             roots = n * np.pi
         else:
             # cos x cosh x = 1 split into even modes, tan(x/2) = -tanh(x/2), and odd ones
-            turns, sign = np.pi * ((n + 1) // 2), np.where(n % 2 == 1, -1.0, 1.0)
+            turns = np.pi * ((n + 1) // 2)
+            sign = np.where(n % 2 == 1, -1.0, 1.0)
             roots = (n + 0.5) * np.pi
             for _ in range(20):  # contracts by a factor 30 or more
                 roots = 2.0 * (turns + sign * np.arctan(np.tanh(0.5 * roots)))
@@ -255,7 +256,8 @@ class Beam(_Uniform):
         if self.support == "free":
             turn = np.sqrt(12.0) / self.length
             rigid = np.stack([np.ones_like(at), turn * (at - 0.5 * self.length)], axis=1)
-            wave, slope = np.hstack([rigid, wave]), np.hstack([np.full(rigid.shape, [0.0, turn]), slope])
+            wave = np.hstack([rigid, wave])
+            slope = np.hstack([np.full(rigid.shape, [0.0, turn]), slope])
             rising, falling = (np.pad(each, ((0, 0), (2, 0))) for each in (rising, falling))
         return (scale * wave, scale * rising, scale * falling), scale * slope
 
@@ -274,7 +276,8 @@ class Beam(_Uniform):
         end = (1.0 + parity * np.exp(-2.0 * half)) * (1.0 if self.support == "free" else -1.0)
         rising = np.exp(-np.outer(self.length - at, k)) / end
         falling = parity * np.exp(-np.outer(at, k)) / end
-        cosine, sine = np.cos(phase), np.sin(phase)
+        cosine = np.cos(phase)
+        sine = np.sin(phase)
         wave = np.where(even, cosine / np.cos(half), sine / np.sin(half))
         slope = k * np.where(even, -sine / np.cos(half), cosine / np.sin(half))
         return wave, slope, rising, falling
@@ -440,7 +443,8 @@ class SupportedBeam(_Uniform):
         """Natural frequencies, Hz, damping ratios and mode shapes."""
         basis = scipy.interpolate.BSpline(self._knots, np.eye(len(self._knots) - DEGREE - 1), DEGREE)
         mass, bending = self._energies(basis)
-        stiffness, lossy = bending.copy(), self.loss_factor * bending
+        stiffness = bending.copy()
+        lossy = self.loss_factor * bending
         fixed = []
         for support in self.supports:
             at = min(support.position, self.length)
@@ -461,7 +465,8 @@ class SupportedBeam(_Uniform):
         squares = 1.0 / inverse[::-1] - shift
         squares[: self._rigid_modes] = 0.0
         kept = squares <= (2.0 * np.pi * self.highest_frequency) ** 2
-        vectors, squares = vectors[:, ::-1][:, kept], squares[kept]
+        vectors = vectors[:, ::-1][:, kept]
+        squares = squares[kept]
         vectors = vectors / np.sqrt(np.einsum("ir,ij,jr->r", vectors, mass, vectors, optimize=True))
         lost = np.einsum("ir,ij,jr->r", vectors, lossy, vectors, optimize=True)
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -476,6 +481,7 @@ class SupportedBeam(_Uniform):
         half = 0.5 * np.diff(breaks)[:, None]
         at = (breaks[:-1, None] + half * (1.0 + nodes)).ravel()
         weight = (half * weights).ravel()[:, None]
-        value, bend = basis(at), basis(at, nu=2)
+        value = basis(at)
+        bend = basis(at, nu=2)
         mass = self.mass_per_length * value.T @ (weight * value)
         return mass, self.bending_stiffness * bend.T @ (weight * bend)

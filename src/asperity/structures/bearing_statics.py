@@ -110,12 +110,14 @@ class LoadedBearing:
 
         None where it stands still or is slower, or where some ball is not pressed at rest.
         """
-        of, angles = self.bearing, self.azimuth[:, 0]
+        of = self.bearing
+        angles = self.azimuth[:, 0]
 
         def all_touch(speed: float) -> bool:
             return bool(_solved(of, self.radial, self.axial, speed, angles).touching.min() == of.balls)
 
-        low, high = 0.0, self.speed
+        low = 0.0
+        high = self.speed
         if high == 0.0 or self.touching.min() == of.balls or not all_touch(low):
             return None
         for _ in range(SPEEDS):
@@ -127,8 +129,10 @@ def load_distribution(
     bearing: BallBearing, radial: float, axial: float, speed: float, cage_angles: ArrayLike | None
 ) -> LoadedBearing:
     """Solve for the load distribution and doubt it, see `BallBearing.loaded`."""
-    radial, axial = not_negative("radial load (N)", radial), not_negative("axial load (N)", axial)
-    speed, preloaded = not_negative("speed (1/s)", speed), axial + bearing.preload
+    radial = not_negative("radial load (N)", radial)
+    axial = not_negative("axial load (N)", axial)
+    speed = not_negative("speed (1/s)", speed)
+    preloaded = axial + bearing.preload
     held = radial + preloaded > 0.0 or bearing.radial_clearance < 0.0
     allowed, remedy = "a radial or axial load, or a preload", "Without one the inner ring is loose."
     require(held, "load", "none", allowed, remedy)
@@ -156,7 +160,8 @@ def _link(stretch: Array, length: float, constant: float) -> tuple[Array, Array,
     They are Hertzian: the energy 0.4 K δ^2.5 of the stretch (…, 2), radial and axial, beyond the length.
     """
     distance = np.linalg.norm(stretch, axis=-1)
-    normal, overlap = stretch / distance[..., None], np.maximum(distance - length, 0.0)
+    normal = stretch / distance[..., None]
+    overlap = np.maximum(distance - length, 0.0)
     load = constant * overlap**1.5
     across = (load / distance)[..., None, None]
     along = (1.5 * constant * np.sqrt(overlap))[..., None, None] - across
@@ -182,7 +187,8 @@ def _descended(
         least = np.maximum(np.maximum(1e-13 * trace, 1e-9 * trace.max()), (trace == 0.0) * scale / LOOSE)
         ridge = least[..., None, None] * np.eye(place.shape[-1])
         move = -np.linalg.solve(hessian + ridge, gradient[..., None])[..., 0]
-        slope, share = (move * gradient).sum(-1), np.ones(size.shape)
+        slope = (move * gradient).sum(-1)
+        share = np.ones(size.shape)
         for _ in range(HALVINGS):
             tried = energy_of(place + share[..., None] * move)
             left = np.linalg.norm(tried[1], axis=-1)
@@ -243,7 +249,8 @@ class _Balls:
 
     def _apart(self, stretch: Array, ball: Array) -> tuple[Array, Array, Array]:
         """Energy of balls at some places, its gradient and Hessian."""
-        inner, outer = _link(stretch - ball, *self.inner), _link(ball, *self.outer)
+        inner = _link(stretch - ball, *self.inner)
+        outer = _link(ball, *self.outer)
         gradient = outer[1] - inner[1] - self.lift * np.array([1.0, 0.0])
         return inner[0] + outer[0] - self.lift * ball[..., 0], gradient, inner[2] + outer[2]
 
@@ -252,8 +259,11 @@ def _solved(bearing: BallBearing, radial: float, axial: float, speed: float, ang
     """The inner ring in balance at each angle of the cage."""
     azimuth = angles[:, None] + 2.0 * math.pi / bearing.balls * np.arange(bearing.balls)
     moved = np.zeros((*azimuth.shape, 2, 3))  # how the stretch follows the inner ring
-    moved[..., 0, 0], moved[..., 0, 1], moved[..., 1, 2] = np.cos(azimuth), np.sin(azimuth), 1.0
-    A, load = bearing.groove_distance, np.array([radial, 0.0, axial])
+    moved[..., 0, 0] = np.cos(azimuth)
+    moved[..., 0, 1] = np.sin(azimuth)
+    moved[..., 1, 2] = 1.0
+    A = bearing.groove_distance
+    load = np.array([radial, 0.0, axial])
     rest = np.array([A - 0.5 * bearing.radial_clearance, 0.0])
 
     def stretched(ring: Array) -> Array:
@@ -266,7 +276,8 @@ def _solved(bearing: BallBearing, radial: float, axial: float, speed: float, ang
         return energy.sum(-1) - ring @ load, gradient, hessian
 
     interference = bearing.series_stiffness * max(-0.5 * bearing.radial_clearance, 0.0) ** 1.5
-    scale, lift = max(radial, axial, interference), bearing.centrifugal_force(speed)
+    scale = max(radial, axial, interference)
+    lift = bearing.centrifugal_force(speed)
     balls = _Balls(bearing, lift if lift > TOLERANCE * scale else 0.0)  # less would be lost in rounding
     start = np.zeros((len(angles), 3))
     pressed = (5.0 * scale / bearing.balls / bearing.series_stiffness) ** (2.0 / 3.0)
@@ -292,7 +303,8 @@ def _doubt(found: LoadedBearing) -> None:
     sides = zip(("inner", "outer"), (of.inner_conformity, of.outer_conformity), of.raceway_radii, strict=True)
     for ring, conformity, raceway in sides:
         contact, load = found._contacts[ring]
-        heaviest, D = float(load.max()), of.ball_diameter
+        heaviest = float(load.max())
+        D = of.ball_diameter
         force, lighter = max(alone[ring], default=(0.0, ""))
         lighter = lighter if force > 0.5 * heaviest else "Lower the load"
         check_half_space(
@@ -305,7 +317,8 @@ def _doubt(found: LoadedBearing) -> None:
         )
         peak = float(found._pressure(ring).max())
         if peak > min(STATIC_PRESSURE, of.hardness):
-            hard, limit = peak > of.hardness, min(STATIC_PRESSURE, of.hardness) / 1e9
+            hard = peak > of.hardness
+            limit = min(STATIC_PRESSURE, of.hardness) / 1e9
             means = "the hardness: the rings flow" if hard else "where dents begin (ISO 76)"
             grade = Grade.OUT if hard else Grade.WARNING
             message = (

@@ -259,7 +259,8 @@ def chain(masses: ArrayLike, stiffnesses: ArrayLike, dampings: ArrayLike, *, loa
     InputError
         If nothing is left to press on the contact.
     """
-    mass, unit = np.asarray(masses, dtype=float), np.eye(np.size(masses))
+    mass = np.asarray(masses, dtype=float)
+    unit = np.eye(np.size(masses))
     pressing = GRAVITY * mass
     pressing[-1] += load
     stretch = np.diff(unit, axis=0)
@@ -313,8 +314,10 @@ def carriage(
     at = np.asarray(places, dtype=float)
     lever = np.stack([np.ones_like(at), at - at.mean()], axis=1)
     masses = np.append(np.full(at.size, element_mass), [mass, inertia])
-    pressing, unit = GRAVITY * masses, np.eye(masses.size)
-    pressing[-2], pressing[-1] = pressing[-2] + load, 0.0
+    pressing = GRAVITY * masses
+    unit = np.eye(masses.size)
+    pressing[-2] = pressing[-2] + load
+    pressing[-1] = 0.0
     stretch = lever @ unit[-2:] - unit[: at.size]
     damping, stiffness = (
         stretch.T * np.full(at.size, each) @ stretch for each in (upper_damping, upper_stiffness)
@@ -326,6 +329,7 @@ def _pressed(body: Body) -> Body:
     """The body, if it presses on each of its contacts."""
     least = float(body.static_loads.min())
     if not least > 0.0:
-        received, allowed = f"a contact under {in_newtons(least)}", "contacts that are pressed at rest"
+        received = f"a contact under {in_newtons(least)}"
+        allowed = "contacts that are pressed at rest"
         raise InputError("load (N)", received, allowed, "Press more.")
     return body

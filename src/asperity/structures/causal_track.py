@@ -165,7 +165,9 @@ class _Fit:
 
     def linearised(self, unknowns: Array) -> tuple[Array, Array]:
         """Weighted errors and departures, (n,), and their slopes, (n, unknowns)."""
-        receptance, share, columns = self.receptance(self.track_of(unknowns)), 1e-6, []
+        receptance = self.receptance(self.track_of(unknowns))
+        share = 1e-6
+        columns = []
         for name, part in zip(self.lossy, self.parts(unknowns), strict=True):
             stiffer = self.receptance(self.track_of(unknowns, name, share))
             slope = (stiffer - receptance) / (share * (self.basis @ part))
@@ -182,7 +184,8 @@ class _Fit:
         """Errors of the level in each band, dB, large ones weighted, and their slopes."""
         transfer = 1.0 / (carried + receptance)
         power = np.abs(transfer) ** 2
-        level, share = self.banded(power), 1.0 / np.sqrt(len(WHEELS))
+        level = self.banded(power)
+        share = 1.0 / np.sqrt(len(WHEELS))
         error = 10.0 * np.log10(level / wanted)
         rising = self.banded((-2.0 * power * transfer)[..., None] * change).real
         slopes = 10.0 / np.log(10.0) * rising / level[:, None]
@@ -198,7 +201,8 @@ class _Fit:
 
 def _least_squares(linearised: Linearised, start: Array) -> Array:
     """Unknowns, not negative, of the least sum of squares: Levenberg-Marquardt, its steps by `nnls`."""
-    unknowns, damping = start, 1e-3
+    unknowns = start
+    damping = 1e-3
     residual, slope = linearised(unknowns)
     for _ in range(STEPS):
         brake = np.sqrt(damping) * np.linalg.norm(slope, axis=0)

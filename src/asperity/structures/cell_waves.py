@@ -70,7 +70,8 @@ class CellWaves:
 
     def carried(self, first: int, last: int, zone: slice = slice(None)) -> Complex:
         """Change of each wave (2, f) from one equal part to another, in either direction, in a zone of f."""
-        whole, length = replace(self, start=0.0), self.edges[-1] / self.bays
+        whole = replace(self, start=0.0)
+        length = self.edges[-1] / self.bays
         begin, end = (whole._span(bay * length)[0] for bay in sorted((first, last)))
         return self._carried(begin, end, zone)
 
@@ -89,7 +90,8 @@ class CellWaves:
         outgoing, incoming = np.empty((2, len(places), *self.wavenumbers.shape), complex)
         for n, x in enumerate(places):
             first, at = self._place(float(x))
-            carried, parts = self._carried(first, at[0]), self._parts(*at)
+            carried = self._carried(first, at[0])
+            parts = self._parts(*at)
             outgoing[n] = carried * self._shape(self.decaying, at[0], parts)
             incoming[n] = self._shape(self.growing, at[0], parts) / carried
         return outgoing, incoming
@@ -101,7 +103,8 @@ class CellWaves:
     def receptance(self, x: float, x0: float) -> Complex:
         """Displacement at `x` per force at `x0`, (f,), m/N; positions from the first support, m."""
         whole = replace(self, start=0.0)
-        first, last = whole._span(min(x, x0)), whole._span(max(x, x0))
+        first = whole._span(min(x, x0))
+        last = whole._span(max(x, x0))
         parts = self._parts(*last)
         decaying = self._shape(self.decaying, last[0], parts)
         waves = decaying * self._shape(self.growing, first[0], parts if x == x0 else self._parts(*first))
@@ -109,7 +112,8 @@ class CellWaves:
 
     def _span(self, x: float) -> tuple[int, float]:
         """Number of the span at a place of the stretch, counted on through the cells, and the place in it."""
-        at, period = self.start + x, self.edges[-1]
+        at = self.start + x
+        period = self.edges[-1]
         cell = int(np.floor(at / period + _SAME))
         place = at - cell * period
         inside = int(np.searchsorted(self.edges[1:-1], place + _SAME * period, side="right"))
@@ -248,11 +252,13 @@ def _carry(amplitudes: Complex, supports: Complex, decays: Complex, right: _Half
 
     The slower wave is carried forwards, the faster backwards: so rounding dies away.
     """
-    count, one = len(supports), np.eye(2)[:, :, None]
+    count = len(supports)
+    one = np.eye(2)[:, :, None]
     behind = np.arange(1, count + 1) % count  # the support behind each span
 
     def forwards(span: int, waves: Complex) -> Complex:
-        sent, support = decays[span][:, None] * waves, behind[span]
+        sent = decays[span][:, None] * waves
+        support = behind[span]
         felt = np.sum(right.felt[support][:, None] * sent, axis=0)
         return np.asarray(sent - right.force[support] * amplitudes[:, None] * felt)
 
@@ -297,7 +303,8 @@ def _normed(values: Complex) -> tuple[Complex, Complex]:
 
 def _smaller_eigenvalue(a: Complex) -> Complex:
     """Eigenvalue (f,) of (2, 2, f) of the smaller modulus."""
-    mean, product = 0.5 * (a[0, 0] + a[1, 1]), a[0, 0] * a[1, 1] - a[0, 1] * a[1, 0]
+    mean = 0.5 * (a[0, 0] + a[1, 1])
+    product = a[0, 0] * a[1, 1] - a[0, 1] * a[1, 0]
     root = np.sqrt((0.5 * (a[0, 0] - a[1, 1])) ** 2 + a[0, 1] * a[1, 0])
     larger = mean + np.where(np.real(root * mean.conj()) < 0.0, -root, root)
     return product / larger
@@ -327,16 +334,20 @@ def static_receptance_of_cell(
     cells = 1 + int(np.ceil(_FAR * characteristic / period))
     within = np.concatenate([[0.0], np.cumsum(lengths[:-1])])
     nodes = (within + period * np.arange(-cells, cells + 1)[:, None]).ravel()
-    held, at = np.tile(supports, 2 * cells + 1), x % period
+    held = np.tile(supports, 2 * cells + 1)
+    at = x % period
     node = int(np.argmin(np.abs(nodes - at)))
     if abs(nodes[node] - at) > _SAME * period:
         node = int(np.searchsorted(nodes, at))
-        nodes, held = np.insert(nodes, node, at), np.insert(held, node, 0.0)
+        nodes = np.insert(nodes, node, at)
+        held = np.insert(held, node, 0.0)
     matrix = np.zeros((2 * nodes.size, 2 * nodes.size))
     matrix[::2, ::2] = np.diag(held)
     for first, span in enumerate(np.diff(nodes)):
         soft = 12.0 * stiffness * shear / span**2
-        six, near, far = 6.0 * span, (4.0 + soft) * span**2, (2.0 - soft) * span**2
+        six = 6.0 * span
+        near = (4.0 + soft) * span**2
+        far = (2.0 - soft) * span**2
         beam = [
             [12.0, six, -12.0, six],
             [six, near, -six, far],

@@ -19,7 +19,10 @@ from asperity.structures.wheel_modes import WheelModes
 
 # UIC 60 as in the program rolland: E = 210 GPa, G = 80.769 GPa, A = 76.7 cm², I_z = 512.7 cm⁴, J = 221.2 cm⁴,
 # I_p = 3550 cm⁴, lateral κ = 0.538, centre of twist 33 mm below the centroid, foot 81 mm below it
-_YOUNG, _SHEAR, _AREA, _DENSITY = 210e9, 80.769e9, 76.7e-4, 60.2 / 76.7e-4
+_YOUNG = 210e9
+_SHEAR = 80.769e9
+_AREA = 76.7e-4
+_DENSITY = 60.2 / 76.7e-4
 THIRD = 1.0 / 3.0
 """Lateral stiffness of a pad over its vertical one."""
 _PADS, _RAILS = "pads lie between", "rails lie between"
@@ -74,8 +77,10 @@ class LateralWaves:
 
     def receptance(self, x: float, x0: float) -> Complex:
         """Motion at `x` per force at `x0`, (2, 2, f); positions from any support, m."""
-        first, last = min(x, x0), max(x, x0)
-        start, end = np.floor(first / self.spacing), np.floor(last / self.spacing)
+        first = min(x, x0)
+        last = max(x, x0)
+        start = np.floor(first / self.spacing)
+        end = np.floor(last / self.spacing)
         to = self.outgoing(last - end * self.spacing) * self.coefficients * self.multipliers ** (end - start)
         found = np.einsum("ajf,bjf->abf", to, self.incoming(first - start * self.spacing))
         return np.asarray(found if x >= x0 else found.swapaxes(0, 1))
@@ -92,13 +97,16 @@ def lateral_waves(free: FreeWaves, support: Complex, spacing: float) -> LateralW
     eigenvalue problem of three. The superposition of all supports is the sum of the residues at its roots,
     −2/((λ − 1/λ) Σ_i z_i² sin k_i L/(i α_i)), as in `asperity.structures.periodic_rail` for one motion.
     """
-    phase, amplitude = free.wavenumbers * spacing, 1j * free.amplitudes
+    phase = free.wavenumbers * spacing
+    amplitude = 1j * free.amplitudes
     periodic_rail.refuse_decay(phase.imag)
-    sine, shapes = np.sin(phase), free.shapes
+    sine = np.sin(phase)
+    shapes = free.shapes
     matrix = np.einsum("if,aif,abf,blf,lf->fil", amplitude, shapes, support, shapes, sine, optimize=True)
     matrix += np.einsum("if,il->fil", np.cos(phase), np.eye(3))
     c, z = np.linalg.eig(matrix)
-    c, z = c.T, np.moveaxis(z, 0, -1)  # (j, f), (i, j, f)
+    c = c.T
+    z = np.moveaxis(z, 0, -1)  # (j, f), (i, j, f)
     root = np.sqrt(c - 1.0) * np.sqrt(c + 1.0)
     multipliers = 1.0 / np.where(np.real(root * np.conj(c)) < 0.0, c - root, c + root)
     square = np.sum(z**2 * (sine / amplitude)[:, None], axis=0)
@@ -243,13 +251,16 @@ class LateralTrack:
         (GJ q − I ω²) − p (m' e ω²)², I the polar inertia about the centre of twist and e the height of the
         centroid above it. Each root is a wave, and its residue has one shape.
         """
-        square, e, mass = omega**2, self.centroid_height, self.track.mass_per_length
+        square = omega**2
+        e = self.centroid_height
+        mass = self.track.mass_per_length
         losses = self.track.rail.losses.at(omega)
         bending, torsion = self.bending_stiffness * losses, self.torsional_stiffness * losses
         soft = self.bending_stiffness / self.shear_stiffness  # EI/S, m²: both lose alike
         held = np.broadcast_to(foundation, (2, 2, len(omega)))
         turning = (self.polar_inertia + mass * e**2) * square - held[1, 1]
-        moved, coupled = mass * square - held[0, 0], mass * e * square - held[0, 1]
+        moved = mass * square - held[0, 0]
+        coupled = mass * e * square - held[0, 1]
         rotary = self.rotary_inertia * square
         rest = 1.0 - rotary * soft / bending  # p = rest + soft q
         along = -(rotary + moved * soft)  # q t − p m' ω² = bending q² + along q − moved rest
@@ -261,11 +272,13 @@ class LateralTrack:
         )
         q, slope = _roots(np.stack(cubic))
         shear = rest + soft * q
-        lateral, cross = shear * (torsion * q - turning), shear * coupled
+        lateral = shear * (torsion * q - turning)
+        cross = shear * coupled
         twist = q * (bending * q + along) - moved * rest
         bends = np.abs(lateral * turning) >= np.abs(twist * moved)
         larger = np.where(bends, lateral, twist)
-        one, ratio = np.ones_like(q), cross / larger
+        one = np.ones_like(q)
+        ratio = cross / larger
         k = np.sqrt(q)
         k = np.where(k.imag > 0.0, -k, k)
         shapes = np.stack([np.where(bends, one, ratio), np.where(bends, ratio, one)])
@@ -273,10 +286,12 @@ class LateralTrack:
 
     def waves(self, omega: ArrayLike) -> LateralWaves:
         """The three waves of the supported rail at angular frequencies (f,), rad/s, as of `Track.waves`."""
-        omega, track = np.atleast_1d(np.asarray(omega, dtype=complex)), self.track
+        omega = np.atleast_1d(np.asarray(omega, dtype=complex))
+        track = self.track
         if not self._is_damped:
             omega = omega * (1.0 - VANISHING_DAMPING * 1j)
-        support, spacing = self.support(omega), track.sleeper_spacing
+        support = self.support(omega)
+        spacing = track.sleeper_spacing
         if track.continuous:
             return lateral_waves(self.free_waves(omega, support / spacing), 0.0 * support, spacing)
         return lateral_waves(self.free_waves(omega), support, spacing)
@@ -307,7 +322,8 @@ class LateralTrack:
         from the middle, positive towards the field side; downwards, and towards the field side. A vertical
         force off the middle twists the rail. Angular frequencies (f,), rad/s, that may be complex.
         """
-        motion, moved = self.waves(omega).receptance(x, x0), self.contact_shapes(place)
+        motion = self.waves(omega).receptance(x, x0)
+        moved = self.contact_shapes(place)
         found = np.einsum("ma,abf,nb->mnf", moved, motion, moved)
         found[0, 0] += self.track.waves(omega).receptance(x, x0)
         return found
@@ -324,7 +340,8 @@ class LateralTrack:
         """
         waves, (_, sideways) = self.waves(_angular(frequency)), self.contact_shapes(0.0)
         spacing = self.track.sleeper_spacing
-        distances, force = spacing * np.array(EN_15461_BAYS), 0.5 * spacing
+        distances = spacing * np.array(EN_15461_BAYS)
+        force = 0.5 * spacing
         motion = np.stack([waves.receptance(force + each, force) for each in distances])
         responses = np.einsum("a,xabf,b->xf", sideways, motion, sideways)
         return decay_rate_of_responses(distances, np.abs(responses))

@@ -31,8 +31,11 @@ class Mobility:
     """
 
     def __init__(self, waves: CellWaves | PeriodicWaves, omega: Array) -> None:
-        self.omega, self.steps, self.spans = omega, waves.steps, waves.spans
-        self.edges, shortest = waves.edges, float(np.abs(waves.wavenumbers).max())
+        self.omega = omega
+        self.steps = waves.steps
+        self.spans = waves.spans
+        self.edges = waves.edges
+        shortest = float(np.abs(waves.wavenumbers).max())
         self.count = FEWEST_NODES + math.ceil(shortest * float(np.diff(waves.edges).max()))
         self.nodes, self.weights = np.polynomial.legendre.leggauss(2 * self.count)
 
@@ -74,7 +77,8 @@ class Mobility:
 
         Of the polynomial through all nodes, by Legendre coefficients: ∫ P_k = (P_{k+1} − P_{k−1})/(2k + 1).
         """
-        count, x = len(self.nodes), 2.0 * place - 1.0
+        count = len(self.nodes)
+        x = 2.0 * place - 1.0
         at = np.polynomial.legendre.legvander(np.array([x]), count)[0]
         integral = np.concatenate([[x + 1.0], at[2:] - at[:-2]])  # times 2k + 1, of each k below count
         basis = np.polynomial.legendre.legvander(self.nodes, count - 1)
@@ -122,7 +126,8 @@ class Mobility:
         """Forms (n, i, j, f) of all spans after each, and of all before it, in the scale of each."""
         step = self.steps[:, :, None] * self.steps[:, None].conj()  # from a span to the next
         around = np.prod(step, axis=0)
-        after, before = np.zeros_like(decaying), np.zeros_like(growing)
+        after = np.zeros_like(decaying)
+        before = np.zeros_like(growing)
         count = len(step)
         for lap in range(2):  # around the cell once to close it, and once more
             if lap:
@@ -190,7 +195,8 @@ def dissipated_power(track: Track, frequency: ArrayLike, x: float) -> dict[str, 
     """
     at = np.atleast_1d(finite_array("frequency (Hz)", frequency, "finite positive numbers", above=0.0))
     field = _Field(track, 2.0 * np.pi * at, real("position of the force (m)", x, "a finite number"))
-    omega, found = field.omega, {"rail": field.omega * field.strained()}
+    omega = field.omega
+    found = {"rail": field.omega * field.strained()}
     hung = [] if track.damper is None else [(["rail_damper", "its mass"], track.damper, field.dampers())]
     for names, chain, moved in [(list(track.elements), track.support, field.supports()), *hung]:
         parts = zip(names, chain.elements, chain.squares(omega), chain.below(omega), strict=True)
@@ -208,13 +214,17 @@ class _Field:
     """Motion of the rail under a unit force at a place of a bay, by the waves between its points."""
 
     def __init__(self, track: Track, omega: Array, x: float) -> None:
-        self.track, self.omega, self.spacing = track, omega, track.sleeper_spacing
+        self.track = track
+        self.omega = omega
+        self.spacing = track.sleeper_spacing
         half = 0.5 * self.spacing
         self.place = int(x % self.spacing >= half), x % self.spacing % half
-        support, hung = track.support.stiffness(omega), np.zeros(len(omega), complex)
+        support = track.support.stiffness(omega)
+        hung = np.zeros(len(omega), complex)
         if track.damper is not None:
             hung = track.damper.stiffness(omega)
-        self.held, bed = np.zeros(len(omega), complex), None
+        self.held = np.zeros(len(omega), complex)
+        bed = None
         if track.continuous:
             self.held = bed = (support + hung) / self.spacing
             support = hung = np.zeros(len(omega), complex)
@@ -240,8 +250,10 @@ class _Field:
 
     def strained(self) -> Array:
         """Integral along the rail of Im EI times θ' squared and of Im S times w' - θ squared, m/N."""
-        rail, squares = self.track.rail, self.wavenumbers**2
-        relative, inertia = rail.losses.at(self.omega), rail.mass_per_length * self.omega**2 - self.held
+        rail = self.track.rail
+        squares = self.wavenumbers**2
+        relative = rail.losses.at(self.omega)
+        inertia = rail.mass_per_length * self.omega**2 - self.held
         bent = rail.bending_stiffness * np.imag(relative)
         if rail.shear_stiffness is None:
             return np.asarray(bent * self._along(_changed(self.waves, -squares, -squares)))

@@ -80,7 +80,8 @@ def receptances_between(
 
 def modal_answers(frequency: ArrayLike, natural: Array, ratios: Array) -> Complex:
     """Displacement of modes of unit mass per modal force (..., m), s²; frequencies (...) in Hz, e^{+iωt}."""
-    omega, own = 2.0 * np.pi * np.asarray(frequency)[..., None], 2.0 * np.pi * natural
+    omega = 2.0 * np.pi * np.asarray(frequency)[..., None]
+    own = 2.0 * np.pi * natural
     return np.asarray(1.0 / (own**2 - omega**2 + 2j * ratios * own * omega), dtype=complex)
 
 
@@ -97,7 +98,8 @@ def checked_flexibility(given: ArrayLike | None, count: int) -> Array | None:
     """Take a residual flexibility that creates no energy; None where there is none."""
     if given is None:
         return None
-    what, allowed = "residual flexibility (m/N)", f"{count} numbers, or a matrix of so many rows and columns"
+    what = "residual flexibility (m/N)"
+    allowed = f"{count} numbers, or a matrix of so many rows and columns"
     values = real_array(what, given, allowed)
     if values.shape not in ((count,), (count, count)) or not np.isfinite(values).all():
         raise InputError(what, f"shape {values.shape}, or numbers that are not finite", allowed)
@@ -145,7 +147,8 @@ def pieces_of(spline: "scipy.interpolate.BSpline") -> Pieces:
 def shapes_at(pieces: Pieces, x: ArrayLike) -> tuple[Array, Array]:
     """Shapes and slopes (n, modes) at positions, m; an `InputError` where one lies beyond the breaks."""
     at = np.ascontiguousarray(np.atleast_1d(np.asarray(x, dtype=float)))
-    first, last = float(pieces.breaks[0]), float(pieces.breaks[-1])
+    first = float(pieces.breaks[0])
+    last = float(pieces.breaks[-1])
     slack = 1e-9 * (last - first)
     if not (at.min() >= first - slack and at.max() <= last + slack):
         received = f"{at.min():.6g} to {at.max():.6g}"

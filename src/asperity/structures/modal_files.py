@@ -85,7 +85,8 @@ def _of_analysis(found: Dataset) -> Dataset:
     and imaginary part of the eigenvalue, of modal A and of modal B. At each node stand the values of all
     degrees of freedom, of complex ones real and imaginary part in turn.
     """
-    kind, at_nodes = found.get("analysis_type"), found.get("dataset_location") == AT_NODES
+    kind = found.get("analysis_type")
+    at_nodes = found.get("dataset_location") == AT_NODES
     if kind not in (NORMAL, *COMPLEX) or not at_nodes:
         return {}
     values = np.array(found["data_at_node"], dtype=float)
@@ -148,7 +149,8 @@ def _mode(
     row = {int(number): i for i, number in enumerate(mode["node_nums"])}
     values = np.asarray(mode[f"r{force + 1}"])[[row[number] for number in numbers]]
     if mode["analysis_type"] == NORMAL:
-        frequency, mass = float(mode["freq"]), float(mode["modal_m"])
+        frequency = float(mode["freq"])
+        mass = float(mode["modal_m"])
         ratio = float(mode["modal_damp_vis"]) or 0.5 * float(mode["modal_damp_his"])
         shape = values.real.astype(float)
     else:
@@ -266,7 +268,8 @@ def read_modal_structure(
     require(size <= LARGEST_FILE, file.name, amount(size), f"at most {amount(LARGEST_FILE)}")
     numbers = None if nodes is None else [int(node) for node in nodes]
     given: dict[str, Any] = {"along": along, "force": force, "damping": damping, "nodes": numbers}
-    universal, netcdf = _is_universal(file), is_hdf5(file) or file.suffix.lower() in (".nc", ".nc4")
+    universal = _is_universal(file)
+    netcdf = is_hdf5(file) or file.suffix.lower() in (".nc", ".nc4")
     if universal and not around:
         return _read_from(file, "universal", modes_of_universal, given)
     for name, value in given.items():
@@ -325,7 +328,8 @@ def _table_of_modes(file: Path, place: str, dimension: str) -> dict[str, Array]:
     missing = [row for row, (name, _) in ROWS.items() if name in NEEDED and name not in found]
     if missing or not rows:
         raise InputError(file.name, f"no line of {missing[0] if missing else 'numbers'}", table_of)
-    table, modes = np.array(rows), found["natural_frequencies"].size
+    table = np.array(rows)
+    modes = found["natural_frequencies"].size
     columns = 1 + modes + (not math.isnan(residual))
     if table.shape[1] != columns:
         last = "" if math.isnan(residual) else ", and the residual flexibility"

@@ -39,12 +39,15 @@ def vector_fit(
     (2006) 1587; one QR factorisation per response: D. Deschrijver et al., IEEE Microw. Wireless Compon. Lett.
     18 (2008) 383. Responses are first compressed to the few that span them.
     """
-    s, moved = np.asarray(points, dtype=complex), np.asarray(poles, dtype=complex)
+    s = np.asarray(points, dtype=complex)
+    moved = np.asarray(poles, dtype=complex)
     weight = np.ones(s.size) if weights is None else np.asarray(weights, dtype=float)
     weighted = weight * np.atleast_2d(np.asarray(responses, dtype=complex))
-    scale, spanning = np.linalg.norm(weighted), _spanning(weighted)
+    scale = np.linalg.norm(weighted)
+    spanning = _spanning(weighted)
     right = np.concatenate([weighted.real, weighted.imag], axis=1).T
-    best, least = moved, np.inf
+    best = moved
+    least = np.inf
     for _ in range(iterations):
         moved = _stable(_relocated(s, weight, spanning, moved), radius)
         if moved.size == 0 or not np.isfinite(moved).all():
@@ -104,7 +107,8 @@ def _stacked(matrix: Complex) -> Array:
 def _relocated(s: Complex, weight: Array, spanning: Complex, poles: Complex) -> Complex:
     """Zeros of the fitted scaling function: the next poles."""
     basis = partial_fractions(s, poles)
-    known, unknowns = _stacked(weight[:, None] * basis), basis.shape[1]
+    known = _stacked(weight[:, None] * basis)
+    unknowns = basis.shape[1]
     scaling = np.column_stack([basis, np.ones(s.size)])
     blocks: list[Array] = []
     for response in spanning:  # already weighted
@@ -168,8 +172,10 @@ def fit_modes(frequency: Array, receptance: Complex, rigid: Complex) -> Modes:
     every frequency, also outside of the band. Relative errors count the same at all points. Modes that
     contribute nothing are left out.
     """
-    flexible, weights = receptance - rigid, 1.0 / np.abs(receptance)
-    none, masses = np.zeros(0), partial(_modal_masses, frequency, flexible, weights)
+    flexible = receptance - rigid
+    weights = 1.0 / np.abs(receptance)
+    none = np.zeros(0)
+    masses = partial(_modal_masses, frequency, flexible, weights)
     left = float(np.linalg.norm(weights * flexible))
     level = np.abs(receptance)
     return _searched(frequency, flexible[None], weights, level, masses, ((none, none, none), left))
@@ -198,7 +204,8 @@ def fit_shapes(frequency: Array, receptance: Complex, rigid: Complex, driven: ND
 
 def check_record(frequency: Array, receptance: Complex) -> None:
     """Refuse receptances (n, p, e), m/N, at rising frequencies (n,), Hz, that no modes can be fitted to."""
-    what, enough = "receptance", frequency.size >= FEWEST_FREQUENCIES
+    what = "receptance"
+    enough = frequency.size >= FEWEST_FREQUENCIES
     require(enough, what, count_of(frequency.size, "frequency"), f"at least {FEWEST_FREQUENCIES}")
     moves = np.abs(receptance).any(axis=(1, 2)).all()
     require(moves, what, "nothing but zeros at a frequency", "a response", "Leave it out.")
@@ -230,7 +237,8 @@ def check_range(frequency: Array, receptance: Complex) -> None:
     """Refuse what cannot be computed with, m/N at rising frequencies, Hz; zeros are nothing."""
     size = np.abs(receptance).reshape(len(frequency), -1).max(axis=1)
     size = size[size > 0.0]
-    low, high = float(size.min(initial=1.0)), float(size.max(initial=1.0))
+    low = float(size.min(initial=1.0))
+    high = float(size.max(initial=1.0))
     if not (low > 1.0 / LARGEST and high < LARGEST and SLOWEST < frequency[0] < frequency[-1] < LARGEST):
         received = (
             f"{rounded(low, 2)} to {rounded(high, 2)} m/N at {rounded(frequency[0], 2)} to "
@@ -260,7 +268,8 @@ def warn_of_short_band(what: str, frequency: Array, highest: float) -> None:
 def warn_of_wide_lines(frequency: Array, natural: Array, ratios: Array) -> None:
     """Note modes that fall between the lines of a record, rising Hz: noise leaves little of them."""
     inside = (natural > frequency[0]) & (natural < frequency[-1])
-    own, width = natural[inside], 2.0 * (natural * ratios)[inside]
+    own = natural[inside]
+    width = 2.0 * (natural * ratios)[inside]
     apart = np.interp(own, 0.5 * (frequency[1:] + frequency[:-1]), np.diff(frequency))
     narrow = width < LEAST_LINES * apart
     if narrow.any():
@@ -377,7 +386,8 @@ def _mode_shapes(
     ratio = -poles.real / np.abs(poles)
     answers = modal_answers(frequency, natural, ratio)
     scale = np.linalg.norm(answers, axis=0)
-    answers, target = answers / scale, weights * flexible
+    answers = answers / scale
+    target = weights * flexible
     sums = _summed(answers, target, weights)
     mode, at_driven = _first_shapes(sums, driven, len(RESIDUAL_MODES))
     for _ in range(2):  # the second time without modes that contribute nothing
@@ -392,7 +402,9 @@ def _mode_shapes(
         error = float(np.linalg.norm(left))
         kept = np.flatnonzero(parts**2 > max(ONLY_NOISE * error**2, 1e-12 * parts.max(initial=0.0) ** 2))
         kept = kept[np.argsort(natural[mode[kept]], kind="stable")]
-        mode, at_driven, shapes = mode[kept], at_driven[:, kept], shapes[:, kept]
+        mode = mode[kept]
+        at_driven = at_driven[:, kept]
+        shapes = shapes[:, kept]
     return (natural[mode], ratio[mode], shapes / np.sqrt(scale[mode])), error
 
 
@@ -412,7 +424,8 @@ def _first_shapes(sums: _Sums, driven: NDArray[np.intp], residual: int) -> tuple
 
     Those of a mode are of rank one; the last `residual` poles stand for many modes and may have any rank.
     """
-    e, count = len(driven), sums.targets.shape[-1]
+    e = len(driven)
+    count = sums.targets.shape[-1]
     residues = np.zeros((count, e, e))
     for i in range(e):
         for j in range(e):
@@ -437,7 +450,8 @@ def _settled(sums: _Sums, driven: NDArray[np.intp], mode: NDArray[np.intp], shap
         change = -np.linalg.solve(matrix, slope.ravel()).reshape(shapes.shape)
         found = _error_of(shapes + change, products, targets)
         if found[0] < error:
-            shapes, damping = shapes + change, 0.1 * damping
+            shapes = shapes + change
+            damping = 0.1 * damping
             error, slope, curvature = found
             if np.linalg.norm(change) <= SETTLED * np.linalg.norm(shapes):
                 break
@@ -479,7 +493,8 @@ def _solved(matrix: Array, right: Array, positive: bool = False) -> Array:
     size = np.where(size > 0.0, size, 1.0)
     values, vectors = np.linalg.eigh(matrix / np.outer(size, size))
     kept = values > SINGULAR * values[-1]
-    root, vectors = np.sqrt(values[kept]), vectors[:, kept]
+    root = np.sqrt(values[kept])
+    vectors = vectors[:, kept]
     turned = (vectors.T @ (right / size)) / root
     if positive:
         return np.asarray(_not_negative(root[:, None] * vectors.T, turned)[0] / size)

@@ -34,7 +34,9 @@ class HatResponse:
     """
 
     def __init__(self, track: Track, time_step: float, taps: int, zones: int) -> None:
-        self.track, self.taps, self.time_step = track, taps, time_step
+        self.track = track
+        self.taps = taps
+        self.time_step = time_step
         period = 2 * taps * time_step
         self.shift = SHIFT / period
         self.omega = 2.0 * np.pi / period * np.arange(zones * taps + 1) - 1j * self.shift
@@ -195,7 +197,9 @@ def _weights(
     near: HatResponse, speed: float, positions: int, distance: float, progress: Progress | None
 ) -> Array:
     """All rows of the kernel; near the contact receptances are folded as that response says."""
-    taps, time_step, track = near.taps, near.time_step, near.track
+    taps = near.taps
+    time_step = near.time_step
+    track = near.track
     way = _Way(near, HatResponse(track, time_step, taps, 1), speed, positions, distance)
     weights = np.zeros((track.cell_bays * positions, taps))
     shapes: Shapes = {}
@@ -276,10 +280,12 @@ class _Begun:
 
     def row(self, start: int) -> Array:
         """Row (taps,) of the kernel from a start on: bay by bay, between the nodes by a cubic."""
-        way, positions = self.way, self.way.positions
+        way = self.way
+        positions = self.way.positions
         at = way.places(start)
         base = np.floor(at).astype(int)
-        cubic, result = lagrange_weights(at - base), np.zeros(way.near.taps)
+        cubic = lagrange_weights(at - base)
+        result = np.zeros(way.near.taps)
         first = 0 if way.mirrored else int(base[0] - 1) // positions
         for bay in range(first, int(base[-1] + 2) // positions + 1):
             low = 0 if way.mirrored else max(int(base[0]) - 1 - bay * positions, 0)
@@ -298,7 +304,8 @@ class _Begun:
 
     def _response(self, start: int, bay: int, low: int, high: int) -> Array:
         """Responses (high − low, taps) at nodes of a bay to a force at a start, before they have grown."""
-        positions, grid = self.way.positions, self.way.grid(bay)
+        positions = self.way.positions
+        grid = self.way.grid(bay)
         here, (outgoing, incoming) = (
             self.shapes[grid, self.own],
             self.shapes[grid, (self.own + bay) % self.bays],
@@ -335,6 +342,9 @@ def _add_waves(amplitude: Complex, shapes: Complex, total: Complex, part: Comple
 
 def lagrange_weights(share: Array) -> Array:
     """Weights (4, ...) of the nodes −1, 0, 1, 2 for places (...) between 0 and 1, of a cubic."""
-    before, after, beyond = share + 1.0, share - 1.0, share - 2.0
-    first, last = -share * after * beyond / 6.0, before * share * after / 6.0
+    before = share + 1.0
+    after = share - 1.0
+    beyond = share - 2.0
+    first = -share * after * beyond / 6.0
+    last = before * share * after / 6.0
     return np.stack([first, before * after * beyond / 2.0, -before * share * beyond / 2.0, last])

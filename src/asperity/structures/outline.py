@@ -60,10 +60,13 @@ def checked_outline(points: ArrayLike, what: str = "outline of the section") -> 
     repeated = (given == np.roll(given, 1, axis=0)).all(axis=1)
     outline = given[~repeated]
     require(3 <= len(outline) <= MOST_POINTS, what, f"{len(outline)} different points", allowed)
-    least, largest = outline[:, 0].min(), np.abs(outline).max()
-    received, allowed = f"a radius of {least * 1e3:.4g} mm", "radii above 0, from the axis"
+    least = outline[:, 0].min()
+    largest = np.abs(outline).max()
+    received = f"a radius of {least * 1e3:.4g} mm"
+    allowed = "radii above 0, from the axis"
     require(least > 0.0, what, received, allowed, "Columns are radius and axial place.")
-    received, allowed = f"a point {largest:.4g} m away", "wheels of 1 mm to 5 m"
+    received = f"a point {largest:.4g} m away"
+    allowed = "wheels of 1 mm to 5 m"
     require(1e-3 <= largest <= 5.0, what, received, allowed, "Is the unit of the coordinates right?")
     if (crossing := _crossing(outline)) is not None:
         first, second = (f"({r * 1e3:.4g} mm, {z * 1e3:.4g} mm)" for r, z in outline[list(crossing)])
@@ -113,7 +116,8 @@ def _web_beside(outline: Array) -> float:
     web = (share > 0.1) & (share < 0.8)
     if not web.any():
         return 0.0
-    low, high = place[~web].min(), place[~web].max()
+    low = place[~web].min()
+    high = place[~web].max()
     return float(max(place[web].max() - high, low - place[web].min()))
 
 
@@ -138,7 +142,8 @@ def volume_of(outline: Array) -> float:
 
 def _crossing(outline: Array) -> tuple[int, int] | None:
     """Numbers of the first two edges that meet, other than at the point between neighbours."""
-    count, to = len(outline), np.roll(outline, -1, axis=0)
+    count = len(outline)
+    to = np.roll(outline, -1, axis=0)
 
     def side(a: Array, b: Array, c: Array) -> Array:
         """Side of the lines from a to b on which points c lie."""
@@ -148,7 +153,8 @@ def _crossing(outline: Array) -> tuple[int, int] | None:
 
     a, b = outline[:, None], to[:, None]
     apart = side(a, b, outline) * side(a, b, to) > 0.0
-    low, high = np.minimum(outline, to), np.maximum(outline, to)
+    low = np.minimum(outline, to)
+    high = np.maximum(outline, to)
     boxes = ((low[:, None] <= high) & (high[:, None] >= low)).all(axis=-1)
     meet = boxes & ~(apart | apart.T)
     number = np.arange(count)
@@ -211,7 +217,8 @@ def _straightened(outline: Array, tolerance: float, kept: NDArray[np.int64]) -> 
     far = int(np.argmax(np.hypot(*(outline - outline[0]).T)))
     stay = np.zeros(len(outline) + 1, dtype=bool)
     corners = sorted({0, far, len(outline), *kept.tolist()})
-    closed, spans = np.vstack([outline, outline[:1]]), list(pairwise(corners))
+    closed = np.vstack([outline, outline[:1]])
+    spans = list(pairwise(corners))
     while spans:
         first, last = spans.pop()
         stay[[first, last]] = True
@@ -237,7 +244,8 @@ def _divided(outline: Array, step: float) -> Array:
 
 def _lattice(around: Array, step: float) -> Array:
     """Points of a lattice of equilateral triangles inside an outline, away from it."""
-    low, high = around.min(axis=0), around.max(axis=0)
+    low = around.min(axis=0)
+    high = around.max(axis=0)
     rows = np.arange(low[1], high[1], 0.5 * np.sqrt(3.0) * step)
     columns = np.arange(low[0], high[0] + step, step)
     r = columns + 0.5 * step * (np.arange(len(rows)) % 2)[:, None]
@@ -304,8 +312,10 @@ def _quadratic(corners: Array, triangles: NDArray[np.int64], around: int) -> Mes
 
 BACK = 0.070
 """Distance of the running circle from the back of the flange, m."""
-_LENGTH, _WITHIN = Quantity("m", above=0), "1 mm to 1 m: wheels lie between"
-_OFFSET, _SIDE = Quantity("m"), "-0.5 m to 0.5 m: wheels are narrower"
+_LENGTH = Quantity("m", above=0)
+_WITHIN = "1 mm to 1 m: wheels lie between"
+_OFFSET = Quantity("m")
+_SIDE = "-0.5 m to 0.5 m: wheels are narrower"
 _POINTS = 41
 """Points along each side of the web."""
 
@@ -382,7 +392,8 @@ class WheelSection:
 
     def outline(self, radius: float) -> Array:
         """Outline (n, 2), radius and axial place, m, of a wheel of a radius at its running circle, m."""
-        rim, inside = positive("radius of the wheel (m)", radius) - self.rim_thickness, self.rim_width - BACK
+        rim = positive("radius of the wheel (m)", radius) - self.rim_thickness
+        inside = self.rim_width - BACK
         what, allowed = "section of the wheel", "bore, hub and rim one outside the other"
         received = f"radii of {self.bore_radius:g}, {self.hub_radius:g} and, inside the rim, {rim:g} m"
         require(self.bore_radius < self.hub_radius < rim, what, received, allowed)
@@ -399,7 +410,8 @@ class WheelSection:
         hub = middle + self.hub_offset + 0.5 * self.hub_width * np.array([-1.0, 1.0])
         narrow = hub[0] < web[0] - half[0] and 2.0 * half[-1] < self.rim_width
         require(narrow, what, "a web wider than hub or rim", "a web narrower than both")
-        root, height = -BACK + 1.5 * self.flange_thickness, self.flange_height
+        root = -BACK + 1.5 * self.flange_thickness
+        height = self.flange_height
         flange = [
             (radius - self.tread_slope * root, root),
             (radius + height, -BACK + 0.7 * self.flange_thickness),

@@ -32,13 +32,15 @@ class Rail:
         """
         if foundation is not None:
             return self._bedded(omega, foundation)
-        relative, mass = self.losses.at(omega), self.mass_per_length
+        relative = self.losses.at(omega)
+        mass = self.mass_per_length
         bending = self.bending_stiffness * relative
         if self.shear_stiffness is None or self.rotary_inertia is None:
             k = np.sqrt(omega) * (mass / bending) ** 0.25
             scale = 1.0 / (4.0 * bending * k**3)
             return np.stack([k, -1j * k]), np.stack([-1j * scale, -scale])
-        shear, inertia = self.shear_stiffness * relative, self.rotary_inertia
+        shear = self.shear_stiffness * relative
+        inertia = self.rotary_inertia
         difference = inertia - mass * bending / shear
         root = omega * np.sqrt(omega**2 * difference**2 + 4.0 * bending * mass)
         first = omega**2 * (inertia + mass * bending / shear) + root
@@ -51,12 +53,14 @@ class Rail:
 
     def _bedded(self, omega: Complex, foundation: Complex) -> tuple[Complex, Complex]:
         relative = self.losses.at(omega)
-        bending, held = self.bending_stiffness * relative, foundation - self.mass_per_length * omega**2
+        bending = self.bending_stiffness * relative
+        held = foundation - self.mass_per_length * omega**2
         if self.shear_stiffness is None or self.rotary_inertia is None:
             k = np.exp(-0.25j * np.pi) * (held / bending) ** 0.25
             scale = 1.0 / (4.0 * bending * k**3)
             return np.stack([k, -1j * k]), np.stack([-1j * scale, -scale])
-        shear, inertia = self.shear_stiffness * relative, self.rotary_inertia * omega**2
+        shear = self.shear_stiffness * relative
+        inertia = self.rotary_inertia * omega**2
         middle = inertia - held * bending / shear
         root = np.sqrt((inertia + held * bending / shear) ** 2 - 4.0 * bending * held)
         first = middle + np.where(np.real(root * np.conj(middle)) < 0.0, -root, root)
@@ -83,7 +87,9 @@ class Rail:
 
         The frequency at which k = pi/length solves the dispersion relation.
         """
-        k, bending, mass = np.pi / length, self.bending_stiffness, self.mass_per_length
+        k = np.pi / length
+        bending = self.bending_stiffness
+        mass = self.mass_per_length
         if self.shear_stiffness is None or self.rotary_inertia is None:
             return float(k**2 * np.sqrt(bending / mass) / (2.0 * np.pi))
         shear, inertia = self.shear_stiffness, self.rotary_inertia
@@ -94,7 +100,8 @@ class Rail:
     @property
     def static(self) -> tuple[float, float]:
         """Bending stiffness at rest, N m², and shear compliance, 1/N."""
-        rest, shear = self.losses.static, self.shear_stiffness
+        rest = self.losses.static
+        shear = self.shear_stiffness
         return self.bending_stiffness * rest, 1.0 / (shear * rest) if shear else 0.0
 
 
@@ -168,7 +175,8 @@ class PeriodicWaves:
         """As `symmetric_shapes`, at the ends of so many equal parts of the bay; sines follow one another."""
         step = self.wavenumbers * (self.spacing / count)
         sines = np.zeros((count + 1, *step.shape), complex)
-        sines[1], twice = np.sin(step), 2.0 * np.cos(step)
+        sines[1] = np.sin(step)
+        twice = 2.0 * np.cos(step)
         for node in range(2, count + 1):
             np.multiply(twice, sines[node - 1], out=sines[node])
             sines[node] -= sines[node - 2]
@@ -188,7 +196,8 @@ class PeriodicWaves:
 
     def receptance(self, x: float, x0: float) -> Complex:
         """Displacement at `x` per force at `x0`, (f,), m/N; positions from any support, m."""
-        first, last = min(x, x0), max(x, x0)
+        first = min(x, x0)
+        last = max(x, x0)
         first_bay = np.floor(first / self.spacing)
         start = first - first_bay * self.spacing
         bays = np.floor(last / self.spacing)
@@ -213,7 +222,8 @@ def periodic_waves(
     """
     phase = wavenumbers * spacing
     refuse_decay(phase.imag)
-    sine, cosine = np.sin(phase), np.cos(phase)
+    sine = np.sin(phase)
+    cosine = np.cos(phase)
     unit = 1j * amplitudes * sine  # a_i per support stiffness
     (c_1, c_2), (u_1, u_2) = cosine, unit
     total = c_1 + c_2 + support * (u_1 + u_2)

@@ -71,7 +71,9 @@ class RailPoles:
         Looked at are the frequencies of the fit, and those at which a pole may hide between them. Over whole
         bays the power depends on the mean of the residues alone: it is −ω|F|² Im(W)/2 of their transform W.
         """
-        step, pole, residue = self.kernel.time_step, self.poles, self.residues.mean(axis=0)
+        step = self.kernel.time_step
+        pole = self.poles
+        residue = self.residues.mean(axis=0)
         own = np.abs(np.angle(pole))
         angle = np.union1d(_angles(step), own[own > 0.0])
         at = np.exp(1j * angle[angle <= 2.0 * np.pi * _highest(step) * step])[:, None]
@@ -169,8 +171,10 @@ def _angles(time_step: float) -> Array:
 
 def _poles(kernel: MovingKernel, count: int) -> Complex:
     """Common poles, by vector fitting on the unit circle."""
-    half, taps = 0.5 / kernel.time_step, kernel.weights.shape[1]
-    angle, lag = _angles(kernel.time_step), np.arange(1, taps)
+    half = 0.5 / kernel.time_step
+    taps = kernel.weights.shape[1]
+    angle = _angles(kernel.time_step)
+    lag = np.arange(1, taps)
     weights = kernel.weights[_spread(kernel), 1:].astype(complex)
     pieces = np.array_split(angle, math.ceil(angle.size / PIECE))  # the whole matrix is fifty megabytes
     transform = np.hstack([weights @ np.exp(-1j * lag[:, None] * piece) for piece in pieces])
@@ -207,7 +211,8 @@ def _residues(weights: Array, poles: Complex) -> Complex:
     """Least squares in time, of the weights, their running sums and their sum."""
     decays = _decays(poles, weights.shape[1])
     parts = np.stack([decays.real, -decays.imag], axis=1).reshape(-1, weights.shape[1])
-    basis, right = parts[real_basis(poles)].T, weights.T
+    basis = parts[real_basis(poles)].T
+    right = weights.T
     slow = 1.0 / np.sqrt(len(basis))  # running sums weigh like the weights of one step
     matrix = np.vstack([basis, slow * np.cumsum(basis, axis=0)])
     right = np.vstack([right, slow * np.cumsum(right, axis=0)])
@@ -300,12 +305,14 @@ def rail_between(
     -------
     RailBetween
     """
-    at, reach = np.ravel(places), np.inf
+    at = np.ravel(places)
+    reach = np.inf
     apart = np.unique(np.round(np.subtract.outer(at, at), DECIMALS))
     lengths = np.unique(np.abs(apart[apart != 0.0]))
     kernel = direct.kernel
     crossing: dict[float, RailPoles | MovingKernel] = {}
-    positions, taps = len(kernel.weights) // kernel.track.cell_bays, kernel.weights.shape[1]
+    positions = len(kernel.weights) // kernel.track.cell_bays
+    taps = kernel.weights.shape[1]
     like = {"duration": taps * kernel.time_step, "positions": positions, "cache": cache}
     for done, length in enumerate(lengths):
         far = [

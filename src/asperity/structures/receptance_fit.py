@@ -20,7 +20,9 @@ ABOVE = (1.15, 1.5, 3.0)
 FINER = 4
 """Places for each place of a record, at which shapes of these modes are given."""
 DEGREE = 7
-SPARE_KNOTS, KNOTS_PER_WAVELENGTH, MORE_KNOTS = 8, 4.0, 1.5
+SPARE_KNOTS = 8
+KNOTS_PER_WAVELENGTH = 4.0
+MORE_KNOTS = 1.5
 MOST_KNOTS = 0.6
 """Of the places; a shape that needs more is not smoothed."""
 WORTH_KNOTS = 0.7
@@ -82,7 +84,8 @@ def smoothed(at: Array, shape: Array) -> scipy.interpolate.BSpline:
     degree = min(DEGREE, at.size - 1)
     through = scipy.interpolate.make_interp_spline(at, shape, k=degree - (degree + 1) % 2)
     count = int(KNOTS_PER_WAVELENGTH * _wavenumber(at, shape) * np.ptp(at) / (2.0 * np.pi)) + SPARE_KNOTS
-    best, noise = through, np.inf
+    best = through
+    noise = np.inf
     while count < MOST_KNOTS * at.size:
         inner = np.interp(np.linspace(0.0, at.size - 1.0, count - DEGREE + 1), np.arange(at.size), at)
         knots = np.r_[(at[0],) * DEGREE, inner, (at[-1],) * DEGREE]
@@ -90,7 +93,9 @@ def smoothed(at: Array, shape: Array) -> scipy.interpolate.BSpline:
         scatter = float(np.sum((found(at) - shape) ** 2) / (at.size - count))
         if scatter > WORTH_KNOTS * noise:
             return best
-        best, noise, count = found, scatter, int(MORE_KNOTS * count)
+        best = found
+        noise = scatter
+        count = int(MORE_KNOTS * count)
     return through
 
 
@@ -160,7 +165,9 @@ def fit_structure(
     frequency that matters: to one and a half times it, the force on a ball on a beam was up to 0.8 dB low in
     the last one-third octave, to twice it 0.1 dB.
     """
-    at, f, given = positions, frequency, receptance
+    at = positions
+    f = frequency
+    given = receptance
     modal_fit.check_record(f, given)
     near = np.abs(at[:, None] - driven)
     number = np.argmin(near, axis=0)
@@ -176,7 +183,9 @@ def fit_structure(
         rigid = -(moved @ moved[number].T) / (2.0 * np.pi * f[:, None, None]) ** 2 + 0j
     natural, ratios, shapes = modal_fit.fit_shapes(f, given, rigid, number)
     inside = natural <= INSIDE * f[-1]
-    natural, ratios, shapes = natural[inside], ratios[inside], shapes[:, inside]
+    natural = natural[inside]
+    ratios = ratios[inside]
+    shapes = shapes[:, inside]
     modal.warn_of_coarse(at, shapes, natural)
     modal_fit.warn_of_wide_lines(f, natural, ratios)
     fine, modes = with_stiffness_above(f, at, number, given - rigid, (natural, ratios, shapes))
@@ -245,7 +254,8 @@ def receptances_in(rows: Array, source: str) -> tuple[Array, Array, Array, Compl
     shape = f.size, at.size, forces.size
     if len(rows) != math.prod(shape) or len(np.unique(np.ravel_multi_index((i, j, k), shape))) < len(rows):
         received = count_of(len(rows), "line")
-        positions, driven = count_of(at.size, "position"), count_of(forces.size, "force")
+        positions = count_of(at.size, "position")
+        driven = count_of(forces.size, "force")
         each = f"{count_of(f.size, 'frequency')}, {positions} and {driven}"
         allowed = f"{math.prod(shape)}: one for each of {each}"
         raise InputError(source, received, allowed, "Complete the table; nothing is filled in silently.")

@@ -208,8 +208,10 @@ class Around(Modal):
         whole_turn = abs(first) <= 1e-9 and math.isclose(last, 2.0 * math.pi, rel_tol=1e-6)
         require(whole_turn, "angles of modes (rad)", f"{first:.6g} to {last:.6g}", "0 to 2π, a whole turn")
         shapes, _ = self.modes.shapes(np.linspace(first, last, 64))
-        missed, allowed = float(np.abs(shapes[-1] - shapes[0]).max()), "the same shapes at 0 and 2π"
-        closed, received = missed <= CLOSED * np.abs(shapes).max(), f"ends {rounded(missed, 2)} apart"
+        missed = float(np.abs(shapes[-1] - shapes[0]).max())
+        allowed = "the same shapes at 0 and 2π"
+        closed = missed <= CLOSED * np.abs(shapes).max()
+        received = f"ends {rounded(missed, 2)} apart"
         require(closed, "modes around a circle", received, allowed, "Repeat the first row at the end.")
 
     @property

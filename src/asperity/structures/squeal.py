@@ -74,7 +74,8 @@ class CreepingContact:
         O. Aberth, Math. Comput. 27 (1973) 339: Newton's method on the equation times all (ω − pole), over all
         (ω − root) of the other roots, so that no root is found twice.
         """
-        at, own = poles * (1.0 + BEGIN * np.exp(1j * np.arange(len(poles)))), np.eye(len(poles), dtype=bool)
+        at = poles * (1.0 + BEGIN * np.exp(1j * np.arange(len(poles))))
+        own = np.eye(len(poles), dtype=bool)
         moved = np.ones(len(poles), dtype=bool)
         for _ in range(MOST):
             if not moved.any():
@@ -104,7 +105,8 @@ def standing_modes(modes: WheelModes) -> NDArray[np.intp]:
 
     With nodal diameters it is two waves, one behind the other (`WheelModes.turning`).
     """
-    waves, second = modes.nodal_diameters > 0, np.zeros(len(modes.nodal_diameters), dtype=bool)
+    waves = modes.nodal_diameters > 0
+    second = np.zeros(len(modes.nodal_diameters), dtype=bool)
     for n in range(1, len(waves)):
         second[n] = waves[n] and waves[n - 1] and not second[n - 1]
     return np.cumsum(~second)

@@ -277,7 +277,8 @@ class BendingSleeper(Element):
         """By Gauss's rule from the middle to the seat, and from there to the end."""
         if below is None:
             return 1.0
-        waves, seat = self._waves(omega, below), 0.5 * self.seat_distance
+        waves = self._waves(omega, below)
+        seat = 0.5 * self.seat_distance
         total = self._along(waves, lambda x: np.abs(waves.at(x)) ** 2)
         return np.asarray(total / (0.5 * self.length) / np.abs(waves.at(seat)) ** 2)
 
@@ -320,12 +321,18 @@ class _SleeperWaves:
         self, stiffness: Complex, bending: Complex | float, half: float, seat: float, mirror: float
     ) -> None:
         k = np.exp(-0.25j * np.pi) * (stiffness / bending) ** 0.25
-        self.wavenumber, self.half, self.seat, self.mirror = k, half, seat, mirror
+        self.wavenumber = k
+        self.half = half
+        self.seat = seat
+        self.mirror = mirror
         self.scale = 1.0 / (4.0 * bending * k**3)
-        near, far = half - seat, half + seat
+        near = half - seat
+        far = half + seat
         running, fading = (np.exp(-each * k * near) + mirror * np.exp(-each * k * far) for each in (1j, 1.0))
-        moment, shear = self.scale * (1j * running - fading), self.scale * (running + fading)
-        turn, fall = mirror * np.exp(-2j * k * half), mirror * np.exp(-2.0 * k * half)
+        moment = self.scale * (1j * running - fading)
+        shear = self.scale * (running + fading)
+        turn = mirror * np.exp(-2j * k * half)
+        fall = mirror * np.exp(-2.0 * k * half)
         both = 1j * (1.0 - turn) * (1.0 + fall) - (1.0 + turn) * (1.0 - fall)
         self.running = ((1.0 + fall) * shear - (1.0 - fall) * moment) / both
         self.fading = ((1.0 + turn) * shear - 1j * (1.0 - turn) * moment) / both
@@ -389,9 +396,12 @@ class Chain:
 
         Two (f,) for each; over the length of a sleeper that bends, for itself and all that lies under it.
         """
-        moved, over, found = np.ones(np.shape(omega), complex), np.ones(np.shape(omega)), []
+        moved = np.ones(np.shape(omega), complex)
+        over = np.ones(np.shape(omega))
+        found = []
         for element, below in zip(self.elements, self.below(omega), strict=True):
-            passed, over = moved * element.passed(omega, below), over * element.spread(omega, below)
+            passed = moved * element.passed(omega, below)
+            over = over * element.spread(omega, below)
             found.append((over * np.abs(moved) ** 2, over * np.abs(moved - passed) ** 2))
             moved = passed
         return found
@@ -462,14 +472,16 @@ class MeasuredSleeper(Element):
         """Imaginary stiffness, N/m, by which it dissipates itself, per square of how it moves by `spread`."""
         if below is None:
             return np.zeros(np.shape(omega))
-        squares, masses = np.abs(self._modes(omega, below)) ** 2, np.array(self.modal_masses)
+        squares = np.abs(self._modes(omega, below)) ** 2
+        masses = np.array(self.modal_masses)
         damping = 4.0 * np.pi * np.array(self.damping_ratios) * self.natural_frequencies * masses
         return np.asarray(self.mass * np.real(omega) * (squares @ damping) / (squares @ masses))
 
     def _modes(self, omega: ArrayLike, below: Complex) -> Complex:
         """Displacement of the seat in each mode per force (..., k), m/N."""
         at = np.asarray(omega, dtype=complex)[..., None]
-        own, held = 2.0 * np.pi * np.array(self.natural_frequencies), below[..., None] / self.mass
+        own = 2.0 * np.pi * np.array(self.natural_frequencies)
+        held = below[..., None] / self.mass
         stiffness = own**2 + held - at**2 + 2j * np.array(self.damping_ratios) * own * at
         return np.asarray(1.0 / (np.array(self.modal_masses) * stiffness))
 

@@ -320,7 +320,9 @@ class Track(track_parameters.TrackParameters):
         omega = np.atleast_1d(np.asarray(omega, dtype=complex))
         if not self.is_damped:
             omega = omega * (1.0 - VANISHING_DAMPING * 1j)
-        rail, spacing, damper = self.rail, self.sleeper_spacing, self.damper
+        rail = self.rail
+        spacing = self.sleeper_spacing
+        damper = self.damper
         if self.continuous:
             foundation = self.support.stiffness(omega) / spacing
             if damper is not None:
@@ -328,10 +330,12 @@ class Track(track_parameters.TrackParameters):
             return periodic_rail.periodic_waves(*rail.waves(omega, foundation), np.zeros_like(omega), spacing)
         if not self.has_cells:
             return periodic_rail.periodic_waves(*rail.waves(omega), self.support.stiffness(omega), spacing)
-        points, lengths = np.array([each.support.stiffness(omega) for each in self.bay_tracks]), self._lengths
+        points = np.array([each.support.stiffness(omega) for each in self.bay_tracks])
+        lengths = self._lengths
         if damper is not None:
             hung = np.broadcast_to(damper.stiffness(omega), points.shape)
-            points, lengths = np.stack([points, hung], axis=1), np.repeat(0.5 * lengths, 2)
+            points = np.stack([points, hung], axis=1)
+            lengths = np.repeat(0.5 * lengths, 2)
         return cell_waves(*rail.waves(omega), points.reshape(-1, omega.size), lengths, self.cell_bays)
 
     def receptance(self, frequency: ArrayLike, x: ArrayLike, x0: ArrayLike) -> Complex:
@@ -364,7 +368,8 @@ class Track(track_parameters.TrackParameters):
         to, of = (finite_array(what, each, allowed) for each in (x, x0))
         if to.shape != of.shape:
             raise InputError(what, f"{shown(x)} and {shown(x0)}", allowed)
-        waves, pairs = self.waves(2.0 * np.pi * at.ravel()), zip(to.flat, of.flat, strict=True)
+        waves = self.waves(2.0 * np.pi * at.ravel())
+        pairs = zip(to.flat, of.flat, strict=True)
         return np.array([waves.receptance(*pair) for pair in pairs]).reshape((*to.shape, *at.shape))
 
     @property
@@ -393,7 +398,8 @@ class Track(track_parameters.TrackParameters):
         float
             m. Exact for discrete supports; with relaxations, when all of them have come to an end.
         """
-        spacing, rail = self.sleeper_spacing, self.rail.static
+        spacing = self.sleeper_spacing
+        rail = self.rail.static
         if self.continuous:
             return force * self.rail.deflection_on(self.foundation_stiffness)
         if not self.bays:

@@ -36,12 +36,14 @@ class Bays:
         whole("bays of a cell", len(self.spacing), f"1 to {MOST_BAYS}", at_least=1, at_most=MOST_BAYS)
         for each in fields(self):
             values = np.array(getattr(self, each.name))
-            what, count = f"{each.name} of the bays", f"as many as bays, {len(self.spacing)}"
+            what = f"{each.name} of the bays"
+            count = f"as many as bays, {len(self.spacing)}"
             require(len(values) == len(self.spacing), what, count_of(len(values), "value"), count)
             if wrong := np.flatnonzero(~((values > 0.0) & np.isfinite(values))).tolist():
                 received = f"{rounded(values[wrong[0]])} times the nominal one in bay {wrong[0] + 1}"
                 raise InputError(what, received, "above zero", "Lower its scatter, or take another seed.")
-        received, allowed = f"{np.mean(self.spacing):.6g} times the nominal one", "the nominal one"
+        received = f"{np.mean(self.spacing):.6g} times the nominal one"
+        allowed = "the nominal one"
         even = np.isclose(np.mean(self.spacing), 1.0, rtol=1e-9)
         require(even, "mean spacing of the bays", received, allowed)
         keep_as_tuples(self, *(each.name for each in fields(self)))
@@ -98,7 +100,9 @@ LAYERS = ("pad", "under_sleeper_pad", "ballast", "subgrade")
 _STIFFNESS, _DAMPING = Quantity("N/m", above=0), Quantity("N s/m", at_least=0)
 _LOSS, _METRE = Number(at_least=0, at_most=5), Quantity("m", above=0)
 _MASS, _BENDING = Quantity("kg", above=0), Quantity("N m^2", above=0)
-_RAILS, _PADS, _BALLAST = "rails lie between", "pads lie between", "ballast lies between"
+_RAILS = "rails lie between"
+_PADS = "pads lie between"
+_BALLAST = "ballast lies between"
 _SLEEPERS, _GROUND = "sleepers lie between", "the ground lies between"
 
 

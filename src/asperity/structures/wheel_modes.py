@@ -17,7 +17,8 @@ from asperity.threads import one_thread_in_linear_algebra
 
 # Radon's rule of seven points in a triangle, exact to the fifth degree
 _ROOT = np.sqrt(15.0)
-_NEAR, _FAR = (6.0 - _ROOT) / 21.0, (6.0 + _ROOT) / 21.0
+_NEAR = (6.0 - _ROOT) / 21.0
+_FAR = (6.0 + _ROOT) / 21.0
 _AT = np.array(
     [[1 / 3, 1 / 3, 1 / 3]]
     + [[*np.roll([1.0 - 2.0 * a, a, a], turn)] for a in (_NEAR, _FAR) for turn in range(3)]
@@ -31,7 +32,8 @@ SHIFT = 0.1
 
 def _shapes() -> tuple[Array, Array]:
     """Quadratic functions at the seven points (7, 6), and derivatives by the areal coordinates (7, 6, 3)."""
-    a, one = _AT, np.eye(3)
+    a = _AT
+    one = np.eye(3)
     pairs = ((0, 1), (1, 2), (2, 0))
     values = np.hstack([a * (2.0 * a - 1.0), np.stack([4.0 * a[:, i] * a[:, j] for i, j in pairs], axis=1)])
     corners = (4.0 * a - 1.0)[:, :, None] * one
@@ -53,10 +55,13 @@ def matrices(mesh: Mesh, n: int, material: Material) -> tuple[Any, Any]:
     f = np.broadcast_to(values, fr.shape)
     strain = np.zeros((*fr.shape[:2], 6, 18))  # rr, θθ, zz, rz, rθ, θz
     strain[:, :, 0, 0::3], strain[:, :, 2, 2::3] = fr, fz
-    strain[:, :, 1, 0::3], strain[:, :, 1, 1::3] = f / r, n * f / r
+    strain[:, :, 1, 0::3] = f / r
+    strain[:, :, 1, 1::3] = n * f / r
     strain[:, :, 3, 0::3], strain[:, :, 3, 2::3] = fz, fr
-    strain[:, :, 4, 0::3], strain[:, :, 4, 1::3] = -n * f / r, fr - f / r
-    strain[:, :, 5, 1::3], strain[:, :, 5, 2::3] = fz, -n * f / r
+    strain[:, :, 4, 0::3] = -n * f / r
+    strain[:, :, 4, 1::3] = fr - f / r
+    strain[:, :, 5, 1::3] = fz
+    strain[:, :, 5, 2::3] = -n * f / r
     around = 2.0 * np.pi if n == 0 else np.pi
     weight = around * _WEIGHT * area[:, None] * r[..., 0]
     stress = np.einsum("ij,eqjb->eqib", _elasticity(material), strain) * weight[..., None, None]
@@ -97,7 +102,8 @@ def natural_modes(
     free = np.flatnonzero(~fixed.ravel())
     stiffness, mass = stiffness[free][:, free], mass[free][:, free]
     start = np.random.default_rng(0).standard_normal(len(free))
-    count, shift = FIRST_MODES, -((2.0 * np.pi * SHIFT * highest) ** 2)
+    count = FIRST_MODES
+    shift = -((2.0 * np.pi * SHIFT * highest) ** 2)
     while True:
         count = min(count, len(free) - 1)
         squares, found = eigsh(stiffness, count, mass, sigma=shift, v0=start)
@@ -186,7 +192,8 @@ class WheelModes:
         frequency, ratio, mass, diameters, disc, tread = np.asarray(table, dtype=float).T
         shape = mass**-0.5
         none = np.zeros((len(mass), 1))
-        number, place = diameters.astype(np.int64), np.zeros(1)
+        number = diameters.astype(np.int64)
+        place = np.zeros(1)
         return cls(frequency, ratio, number, place, shape[:, None], none, disc * shape, tread * shape)
 
     def at(self, place: float = 0.0) -> tuple[Array, Array]:
@@ -201,7 +208,8 @@ class WheelModes:
         """
         if len(self.places) == 1:
             return self.radial[:, 0], self.axial[:, 0]
-        low, high = float(self.places[0]), float(self.places[-1])
+        low = float(self.places[0])
+        high = float(self.places[-1])
         allowed = f"{low * 1e3:.4g} mm to {high * 1e3:.4g} mm, the tread"
         where = real("place of the contact (m)", place, allowed, at_least=low, at_most=high)
         right = int(np.clip(np.searchsorted(self.places, where), 1, len(self.places) - 1))
@@ -266,8 +274,10 @@ class WheelModes:
         part = np.repeat(np.arange(len(split)), np.where(split, 2, 1))
         sign = np.concatenate([[-1.0, 1.0] if two else [0.0] for two in split] or [[]])
         diameters = self.nodal_diameters[part]
-        natural, ratio = 2.0 * np.pi * self.natural_frequencies[part], self.damping_ratios[part]
-        decay, damped = ratio * natural, natural * np.sqrt(1.0 - ratio**2)
+        natural = 2.0 * np.pi * self.natural_frequencies[part]
+        ratio = self.damping_ratios[part]
+        decay = ratio * natural
+        damped = natural * np.sqrt(1.0 - ratio**2)
         moved = damped + sign * diameters * angular_speed
         if (slow := moved <= 0.0).any():
             received = f"faster than a wave of a mode of {diameters[slow][0]} nodal diameters"
@@ -337,7 +347,8 @@ def wheel_modes(
     order = np.argsort(found["frequency"], kind="stable")
     names = ("radial", "axial", "disc", "tread")
     shapes = {name: found[name][order] for name in names}
-    number, none = found["n"][order].astype(np.int64), np.zeros(len(order))
+    number = found["n"][order].astype(np.int64)
+    none = np.zeros(len(order))
     return WheelModes(found["frequency"][order], none, number, found["places"], **shapes).damped(DAMPING)
 
 
@@ -350,7 +361,8 @@ def with_running_circle(outline: Array) -> tuple[Array, int]:
         allowed = "places on both sides of the running circle, at 0 mm"
         raise InputError("outline of the section", received, allowed, "Count them from there.")
     radius = r[over] - z[over] * (r2 - r)[over] / (z2 - z)[over]
-    edge, largest = int(over[np.argmax(radius)]), float(radius.max())
+    edge = int(over[np.argmax(radius)])
+    largest = float(radius.max())
     top = int(np.argmax(r))
     if largest + TREAD_DEPTH < r[top] < largest + HIGHEST_FLANGE:
         inside = r[z < 0.0].max(initial=0.0)

@@ -184,7 +184,9 @@ class VariantAxis(SweptAxis):
         What it says is made as a whole, or not at all. But half of no damping is none: a part of what a case
         does not have changes nothing.
         """
-        found, reasons, whole = {}, list[str](), True
+        found = {}
+        reasons = list[str]()
+        whole = True
         for change in self.changes[name]:
             try:
                 found[change.entry.dotted] = change.applied(case)
@@ -205,7 +207,8 @@ def variant_axis(model: type[Section], given: object, origin: Origin) -> tuple[V
         remedy = f'Write [sweep.{VARIANT}."soft pads"], and below it track.pad_stiffness = "times 0.5".'
         errors.append(InputError(VARIANT, shown(given), "names, each with keys and their values", remedy))
     for name, keys in named.items():
-        what, changes = f'{VARIANT}."{name}"', dict[str, Change]()
+        what = f'{VARIANT}."{name}"'
+        changes = dict[str, Change]()
         if not (isinstance(name, str) and name.strip() and name.isprintable() and name != AS_IT_IS):
             errors.append(InputError(what, "this name", f'a name of one line other than "{AS_IT_IS}"'))
         if not (isinstance(keys, Mapping) and keys):

@@ -54,7 +54,8 @@ class Heart:
     def __init__(self, executor: Executor, members: int) -> None:
         self._client: Any = getattr(executor, "_client", None)
         self._heard = time.monotonic()
-        self.members, self.finished = members, 0
+        self.members = members
+        self.finished = 0
 
     def listen(self) -> bool:
         """Ask the scheduler for a sign; return whether it gave one, and fail if it gave none for long."""

@@ -52,7 +52,9 @@ def _values(what: str, value: Any) -> list[Any]:
     match = _RANGE.fullmatch(value) if isinstance(value, str) else None
     if match is None:
         return [value]
-    low, high, unit = float(match[1]), float(match[2]), (match[3] or "").strip()
+    low = float(match[1])
+    high = float(match[2])
+    unit = (match[3] or "").strip()
     numbers = _numbers(what, value, low, high, match[4], match[5], unit)
     bare = [int(number) if number == int(number) else number for number in numbers]
     return [f"{number} {unit}" for number in bare] if unit else bare
@@ -261,7 +263,8 @@ def _axis(kind: object, dotted: str, values: object, origin: Origin) -> SweptAxi
         allowed = "a list of values, or a range as '80..300 km/h, 6 steps'"
         raise InputError(dotted, shown(values), allowed, "Put the values into [ ].")
     require(values, dotted, "an empty list", "one value or more", "Remove the key for that of the case.")
-    received, allowed = count_of(len(values), "value"), f"at most {MOST_MEMBERS}"
+    received = count_of(len(values), "value")
+    allowed = f"at most {MOST_MEMBERS}"
     require(len(values) <= MOST_MEMBERS, dotted, received, allowed, "Split the study.")
     read: dict[str, Any] = {}  # in their order
     for number, value in enumerate(values, 1):

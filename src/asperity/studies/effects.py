@@ -47,9 +47,11 @@ READY_LISTS: Mapping[str, Callable[[], str]] = {
 def _listed(case: any_case.AnyCase) -> dict[str, Any]:
     """Named changes of a case that are ready to be asked; an `InputError` says if there are none."""
     if isinstance(case, BearingUnderLoad):
-        name, own = IN_BEARINGS, {}
+        name = IN_BEARINGS
+        own = {}
     elif isinstance(case, scene.Case) and isinstance(case.rolled_over, rolled_over.TrackKeys):
-        name, own = OVER_TRACKS, {"wheel": case.ROLLING}  # of bodies, the section is called otherwise
+        name = OVER_TRACKS
+        own = {"wheel": case.ROLLING}  # of bodies, the section is called otherwise
     else:
         allowed = "a case over a track, which is heard, or of a ball bearing"
         raise InputError("what helps", f"a {case.kind} case", allowed)
@@ -168,7 +170,8 @@ def effects(table: xarray.Dataset, quantity: str = "") -> xarray.Dataset:
     base = held.sel({VARIANT: AS_IT_IS}, drop=True)
     change = held.transpose(VARIANT, ...).drop_sel({VARIANT: AS_IT_IS}) - base
     several = [SEED] if SEED in change.dims else []
-    effect, level = change.mean(several), base.mean(several)
+    effect = change.mean(several)
+    level = base.mean(several)
     found = {
         schema.EFFECT: effect,
         schema.EFFECT_ERROR: student(change, CONFIDENCE)[0] if several else effect * np.nan,

@@ -60,7 +60,8 @@ def prediction_band(table: xarray.Dataset, share: float = SHARE) -> xarray.Datas
     """
     sizes = table.sizes if isinstance(table, xarray.Dataset) else {}
     received = f"{sizes.get(SEED, 0)} values of {SEED}"
-    enough, allowed = sizes.get(SEED, 0) >= FEWEST, f"at least {FEWEST}"
+    enough = sizes.get(SEED, 0) >= FEWEST
+    allowed = f"at least {FEWEST}"
     require(enough, "table of the study", received, allowed, "Compute more members.")
     share = real("share", share, "a number above 0 and below 1", above=0.0)
     if share >= 1.0:
@@ -71,7 +72,8 @@ def prediction_band(table: xarray.Dataset, share: float = SHARE) -> xarray.Datas
             continue
         finite = values.where(np.isfinite(values))
         reach, n = student(finite, share)
-        mean, reach = finite.mean(SEED).where(n >= 2), reach * np.sqrt(n + 1.0)
+        mean = finite.mean(SEED).where(n >= 2)
+        reach = reach * np.sqrt(n + 1.0)
         units, what = values.attrs["units"], values.attrs["long_name"]
         told = {"missing": "fewer than two members have it"} if (n < 2).any() else {}
         ends = ("", mean, "mean"), ("_low", mean - reach, "low end"), ("_high", mean + reach, "high end")

@@ -117,7 +117,8 @@ LOADS = {
 
 def _of_bodies(tree: xarray.DataTree) -> dict[str, Any]:
     """What is kept of bodies that roll."""
-    own, first = scene.KEPT, {rolling.CONTACT.name: 0}
+    own = scene.KEPT
+    first = {rolling.CONTACT.name: 0}
     found = {
         entry.name: tree[entry.path]
         .sel(own.get(entry, {}), drop=True)
@@ -163,7 +164,8 @@ def _weighted(found: Mapping[str, xarray.DataArray]) -> dict[str, xarray.DataArr
     """A-weighted totals of levels, where the result has none, and of the force over the linear laws."""
     totals: dict[str, xarray.DataArray] = {}
     for name, level in found.items():
-        units, band = str(level.attrs["units"]), str(level.dims[-1]) if level.dims else ""
+        units = str(level.attrs["units"])
+        band = str(level.dims[-1]) if level.dims else ""
         if units.startswith(LEVEL) and band.endswith("band") and f"{name}_a" not in found:
             long_name = f"A-weighted {level.attrs['long_name']}, over the bands computed"
             total = _total(level, band)
@@ -171,7 +173,8 @@ def _weighted(found: Mapping[str, xarray.DataArray]) -> dict[str, xarray.DataArr
     force = found.get(spectra.FORCE_LEVEL.name)
     for entry in spectra.FORCE_LEVEL_DIFFERENCES.values():
         if force is not None and entry.name in found:
-            law, band = str(found[entry.name].attrs["reference"]), str(force.dims[-1])
+            law = str(found[entry.name].attrs["reference"])
+            band = str(force.dims[-1])
             both = np.isfinite(force) & np.isfinite(force.sel(law=law, drop=True))
             change = _total(force.where(both), band) - _total(force.sel(law=law, drop=True).where(both), band)
             totals[_weighted_name(entry)] = _described(

@@ -41,7 +41,8 @@ def through(executor: futures.Executor, members: Sequence[Member]) -> Outcomes:
 
     A cluster gives members whose worker is lost to another one itself; elsewhere they fail.
     """
-    heart, given = Heart(executor, len(members)), dict[futures.Future[Outcome], Member]()
+    heart = Heart(executor, len(members))
+    given = dict[futures.Future[Outcome], Member]()
     starts = isinstance(executor, futures.ProcessPoolExecutor)  # a process, where members are submitted
     try:
         for member in members:
@@ -87,7 +88,8 @@ def locally(members: Sequence[Member], workers: int | None = None) -> Outcomes:
     while waiting:
         count = min(workers or processors(), len(waiting))
         lost = yield from _in_processes(waiting, count)
-        suspects, waiting = lost[:count], lost[count:]  # they are begun in their order
+        suspects = lost[:count]
+        waiting = lost[count:]  # they are begun in their order
         for member in suspects:
             if (yield from _in_processes([member], 1)):
                 message = "The process ended without a word. Try: fewer workers; memory may be too small."

@@ -137,7 +137,8 @@ class SignalSet:
         values, titles, stated, _ = _recorded(file, None)
         if stated and values.ndim == 1:
             return values, stated
-        received, allowed = f"an array of shape {values.shape}", "a column of times (s), then the response"
+        received = f"an array of shape {values.shape}"
+        allowed = "a column of times (s), then the response"
         columns = values.ndim == 2 and values.shape[1] == 2
         require(columns, file.name, received, allowed, "Or give the sampling rate.")
         times = clock_of(values, titles or ["time (s)", ""], file.name)
@@ -149,7 +150,8 @@ class SignalSet:
         """Level of the noise, as `with_noise` takes it; empty for none."""
         if self.noise is None:
             return {}
-        received, allowed = shown(self.noise), "a level as '20 dB', or an rms above 0 as '0.5 m/s^2'"
+        received = shown(self.noise)
+        allowed = "a level as '20 dB', or an rms above 0 as '0.5 m/s^2'"
         try:
             is_level = unit_in(self.noise) == "dB"
             found = quantity(self.noise, "dB" if is_level else "m/s^2")
@@ -203,7 +205,8 @@ class SignalSet:
             save(xarray.DataTree(xarray.Dataset(held, attrs={**told, "case": case.text})), file)
             return
         files.write_bytes(file.with_suffix(".toml"), case.text.encode())
-        columns, image = signal.T if len(signal) > 1 else signal[0], io.BytesIO()
+        columns = signal.T if len(signal) > 1 else signal[0]
+        image = io.BytesIO()
         if self.format == "npy":
             np.save(image, columns)
         else:
@@ -301,7 +304,8 @@ def read_record(
         clock = clock_of(values, titles, file.name)
         values = values[:, _column(column, values.shape[1], clock, file.name)]
         if clock is not None and (titles or not rate):
-            rate, values = rate_beside(rate, clock.rate, file.name), clock.filled(values)
+            rate = rate_beside(rate, clock.rate, file.name)
+            values = clock.filled(values)
             teller = "its times say" if clock.rate else ""
         elif rate and clock is not None and clock.rate:
             doubt_rate(rate, clock.rate, file.name)
@@ -321,7 +325,10 @@ def _check_size(values: Array, source: str) -> None:
 
 def _recorded(file: Path, array: str | None) -> tuple[Array, list[str], float | None, str]:
     """What a file holds, titles of its columns, and the sampling rate, Hz, if it states it, and what does."""
-    kind, titles, rate, teller = _kind_of(file), list[str](), None, ""
+    kind = _kind_of(file)
+    titles = list[str]()
+    rate = None
+    teller = ""
     beside: dict[str, NDArray[Any]] = {}
     with guards.hostile(file.name, kind.lstrip(".") or "text"):
         if kind == ".wav":
@@ -340,7 +347,8 @@ def _recorded(file: Path, array: str | None) -> tuple[Array, list[str], float | 
         else:
             values, titles = _of_text(file)
         if (told := rates.rate_in(beside, len(values), file.name)) is not None:
-            rate, teller = told[0], f"'{told[1]}' says"
+            rate = told[0]
+            teller = f"'{told[1]}' says"
     return guards.scaled(values, 1.0, file.name), titles, rate, teller
 
 
@@ -365,7 +373,8 @@ def _column(chosen: int | None, count: int, clock: Clock | None, source: str) ->
     signals = [number for number in range(count) if clock is None or number != clock.column]
     if chosen is None and len(signals) == 1:
         return signals[0]
-    received, allowed = count_of(count, "column"), f"one of 1 to {count}"
+    received = count_of(count, "column")
+    allowed = f"one of 1 to {count}"
     if clock is not None:
         allowed += f", of which {clock.column + 1} holds the times"
     within = chosen is not None and chosen - 1 in signals
@@ -395,16 +404,20 @@ def _check_pieces(file: Path) -> None:
     with open(file, "rb") as opened:
         head = opened.read(12)
         order: Literal["big", "little"] = "big" if head[:4] in (b"RIFX", b"FFIR") else "little"
-        place, size, long = len(head), file.stat().st_size, 0
+        place = len(head)
+        size = file.stat().st_size
+        long = 0
         while place + 8 <= size:
             opened.seek(place)
-            name, told = opened.read(4), int.from_bytes(opened.read(4), order)
+            name = opened.read(4)
+            told = int.from_bytes(opened.read(4), order)
             left = size - place - 8
             if name == b"ds64":  # of a file beyond 4 GiB
                 long = int.from_bytes(opened.read(16)[8:], order)
             if name == b"data":
                 told = long or told
-                received, allowed = f"{told} bytes of samples, by its head, in {left}", "all of them"
+                received = f"{told} bytes of samples, by its head, in {left}"
+                allowed = "all of them"
                 require(told <= left, file.name, received, allowed, "The file is truncated; copy it again.")
             place += 8 + told + told % 2
 
@@ -418,11 +431,13 @@ def _of_text(file: Path) -> tuple[Array, list[str]]:
     """Numbers of a table, below lines of words, of which the last may be titles of its columns."""
     content = read_text(file, file.name, "a table of numbers", largest=LARGEST_TEXT, latin=True)
     universal = _UNIVERSAL.match(content)
-    received, allowed = f"a universal file, dataset {universal[1]}" if universal else "", "a table of numbers"
+    received = f"a universal file, dataset {universal[1]}" if universal else ""
+    allowed = "a table of numbers"
     require(not universal, file.name, received, allowed, "Save the signal as .mat, .npz, .wav or text.")
     if "." not in content and _DECIMAL_COMMA.search(content):
         content = content.replace(",", ".")
-    numbers, columns = array("d"), 0
+    numbers = array("d")
+    columns = 0
     words: deque[list[str]] = deque(maxlen=2)
     line = 1
     for lines in blocks_of_lines(content):
@@ -488,7 +503,8 @@ def through_path(signal: ArrayLike, rate: float, response: ArrayLike, response_r
     weights = finite_array("impulse response", response, "a series of finite numbers", shape=(None,))
     rates = positive("sampling rate (Hz)", rate), positive("sampling rate of the path (Hz)", response_rate)
     ratio = Fraction(rates[0] / rates[1]).limit_denominator(MOST_TERMS)
-    received, allowed = f"{rates[0]:g} and {rates[1]:g} Hz", f"up to {MOST_TERMS} times apart"
+    received = f"{rates[0]:g} and {rates[1]:g} Hz"
+    allowed = f"up to {MOST_TERMS} times apart"
     require(0 < ratio < MOST_TERMS, "sampling rates of the signal and the path", received, allowed)
     received = f"{weights.size / rates[1]:.4g} s"
     allowed = f"above 0, and at most {values.size / rates[0]:.4g} s, as the signal"
@@ -496,7 +512,8 @@ def through_path(signal: ArrayLike, rate: float, response: ArrayLike, response_r
     require(0 < weights.size * ratio <= values.size, "impulse response", received, allowed, remedy)
     ours, theirs = ratio.as_integer_ratio()  # samples of the same time
     pieces = next_fast_len(ceil((values.size + weights.size * ratio) / ours), real=True)
-    lines, transfer = rfft(values, pieces * ours), rfft(weights, pieces * theirs)
+    lines = rfft(values, pieces * ours)
+    transfer = rfft(weights, pieces * theirs)
     known = min(lines.size, transfer.size)
     return np.asarray(irfft(lines[:known] * transfer[:known], pieces * ours)[: values.size])
 

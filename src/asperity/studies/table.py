@@ -149,7 +149,8 @@ def columns_of(table: xarray.Dataset, scatter: xarray.Dataset | None = None, *, 
 
     Behind each mean stands its scatter, where there is any.
     """
-    axes, shown = axes_of(table), list[tuple[str, xarray.DataArray]]()
+    axes = axes_of(table)
+    shown = list[tuple[str, xarray.DataArray]]()
     for name, values in table.data_vars.items():
         shown += [(str(name), values)] + ([] if scatter is None else [(f"± {name}", scatter[name])])
     shown = [each for each in shown if bands or not _has_bands(each[1])]

@@ -105,7 +105,8 @@ def rate_beside(given: float | None, told: float | None, source: str, teller: st
     remedy = 'Give the sampling rate, as in --rate "12 kHz", if the samples are even all the same.'
     require(given or told, f"times in {source}", "uneven ones", "equal steps", remedy)
     if given and told:
-        received, allowed = f"{rounded(given, 6)} Hz", f"{rounded(told, 6)} Hz, as {teller}"
+        received = f"{rounded(given, 6)} Hz"
+        allowed = f"{rounded(told, 6)} Hz, as {teller}"
         remedy = "Leave it out, or correct the file: save the signal alone."
         require(abs(given / told - 1.0) <= SAME, f"sampling rate of {source}", received, allowed, remedy)
     return float(told or given or 0.0)

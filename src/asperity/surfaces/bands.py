@@ -122,7 +122,8 @@ class RangeOfBands:
         Each wave has its share of every band that it lies in, of those too that are left out here: more bands
         change none of the waves.
         """
-        length, surface = self.along.length, self.surface
+        length = self.along.length
+        surface = self.surface
         _, low, high, levels = (
             each[list(self.bands)] for each in _wavenumber_bands(surface.wavelengths, surface.levels)
         )
@@ -135,7 +136,8 @@ class RangeOfBands:
 
     def waves(self, tile: int, across: Array) -> Waves:
         """Complex amplitudes (k, ny), m, of a tile at places across (ny,), m."""
-        size, lateral = np.sqrt(2.0 * self.mean_squares), self.surface.lateral
+        size = np.sqrt(2.0 * self.mean_squares)
+        lateral = self.surface.lateral
         first = 1 if self.number == ALL else math.ceil(TILE)
         found = np.zeros((len(size), len(across)), np.complex128)
         turns = random_of(self.surface.seed, MIDDLE + self.number, 0, tile).random(max(len(size) - first, 0))
@@ -151,7 +153,8 @@ class RangeOfBands:
         first = 1 if self.number == ALL else math.ceil(TILE)
         _, weight = _across_waves()
         blocks, lines = _blocks_across(first, len(middle), z)
-        found, size = np.zeros((len(middle), lines), np.complex128), np.sqrt(0.5 * weight)
+        found = np.zeros((len(middle), lines), np.complex128)
+        size = np.sqrt(0.5 * weight)
         noises = {
             side: size * deviates(self.surface.seed, (len(middle), len(size)), self.number, side, tile)
             for side in sorted({each.side for each in blocks})
@@ -171,7 +174,8 @@ def _shared_out(low: Array, high: Array, targets: Array) -> Array:
     A wave has the width of one. One on the edge of two bands belongs to both, and these are scaled until each
     has its own. One that no band holds beyond an edge is left out, where the band has others.
     """
-    covered, bands = np.zeros(math.floor(high.max() + 0.5) + 1), []
+    covered = np.zeros(math.floor(high.max() + 0.5) + 1)
+    bands = []
     for begin, end, target in zip(low, high, targets, strict=True):
         beside = np.arange(max(math.floor(begin + 0.5), 1), math.floor(end + 0.5) + 1)
         width = np.clip(np.minimum(beside + 0.5, end) - np.maximum(beside - 0.5, begin), 0.0, None)
@@ -203,7 +207,8 @@ def _across_waves() -> tuple[Array, Array]:
 
 def _across_basis(z: Array) -> Waves:
     """exp(i u z) (j, ny) of all waves u across a tile: products of few, in two steps."""
-    turn, most = 2.0 * np.pi / TILE_ACROSS, round(HIGHEST_ACROSS * TILE_ACROSS / (2.0 * np.pi))
+    turn = 2.0 * np.pi / TILE_ACROSS
+    most = round(HIGHEST_ACROSS * TILE_ACROSS / (2.0 * np.pi))
     step = math.isqrt(2 * most) + 1
     small = np.exp(1j * turn * np.arange(step)[:, None] * z)
     large = np.exp(1j * turn * np.arange(-most, most + 1, step)[:, None] * z)
@@ -230,13 +235,16 @@ def _blocks_across(first: int, count: int, z: bytes) -> tuple[list[_Block], int]
 def _made_blocks(first: int, count: int, z: bytes) -> tuple[list[_Block], int]:
     tiling, (_, weight) = Tiling.around_zero(TILE_ACROSS, BLEND_ACROSS), _across_waves()
     number = np.log(np.arange(first, first + count) / first) / math.log(SAME_COHERENCE)
-    blocks, number, near = list[_Block](), np.floor(number + 1e-9), np.frombuffer(z)
+    blocks = list[_Block]()
+    number = np.floor(number + 1e-9)
+    near = np.frombuffer(z)
     for each in np.unique(number).tolist():
         waves = slice(*np.searchsorted(number, (each, each + 1.0)).tolist())
         distance = SAME_COHERENCE ** (each + 0.5) * near
         for side in tiling.touching(distance[0], distance[-1]):
             lines = tiling.held(side, distance)
-            basis, share = _across_basis(distance[lines]), tiling.weight(side, distance[lines])
+            basis = _across_basis(distance[lines])
+            share = tiling.weight(side, distance[lines])
             blocks.append(_Block(waves, side, lines, basis * share, share * (weight @ basis.real)))
     return blocks, len(near)
 

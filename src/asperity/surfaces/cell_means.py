@@ -31,7 +31,9 @@ class MeansOverCells:
     """A strip as means over its cells."""
 
     def __init__(self, strip: Strip) -> None:
-        self.strip, self.shape, self.spacing = strip, strip.shape, strip.spacing
+        self.strip = strip
+        self.shape = strip.shape
+        self.spacing = strip.spacing
 
     def rows(self, first: int, stop: int) -> Array:
         """Means over the cells of the rows first … stop − 1, m."""

@@ -94,7 +94,8 @@ def flat_geometry(
     (1 + cos 2πx/l), its length l, m, at least that of the chord √(8 R d), which all others have. S. G. Newton
     and R. A. Clark, J. Mech. Eng. Sci. 21 (1979) 287 (not seen; chord and rounded flat).
     """
-    length, at = _length(depth, radius, shape, length), np.asarray(x, dtype=np.float64)
+    length = _length(depth, radius, shape, length)
+    at = np.asarray(x, dtype=np.float64)
     if shape == "fresh":
         height = -(depth - at**2 / (2.0 * radius))
     else:

@@ -54,7 +54,8 @@ class Edges:
         for name, allowed, most in (("normal", "numbers from 0 to 1", 1.0), ("drop", "depths, m", np.inf)):
             what = f"{name} of edges"
             values = finite_array(what, getattr(self, name), allowed, shape=distance.shape)
-            least, largest = float(values.min(initial=0.0)), float(values.max(initial=0.0))
+            least = float(values.min(initial=0.0))
+            largest = float(values.max(initial=0.0))
             require(least >= 0.0 and largest <= most, what, f"{least:.4g} to {largest:.4g}", allowed)
             object.__setattr__(self, name, values)
 
@@ -82,7 +83,8 @@ class Edges:
     def shares(self) -> Array:
         """Shares of cells (rows, lines) that lie before the edge, as if that were straight."""
         near, far = 0.5 * np.sort(self.sides(), axis=0)
-        near, share = np.maximum(near, 1e-6 * far), np.zeros(far.shape)
+        near = np.maximum(near, 1e-6 * far)
+        share = np.zeros(far.shape)
         for sign, end in ((1, far + near), (-1, far - near), (-1, near - far), (1, -far - near)):
             share += sign * np.maximum(self.distance + end, 0.0) ** 2
         found = share / (8.0 * near * far)

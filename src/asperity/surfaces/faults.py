@@ -153,7 +153,10 @@ class Fault:
             places = zip((x, y), self.map.spacing, self.map.shape, strict=True)
             index = [at / step + 0.5 * (points - 1) for at, step, points in places]
             return np.asarray(map_coordinates(self.map.heights, index, order=1, cval=0.0))
-        a, b, depth, wide = 0.5 * self.length, 0.5 * self.width, self.depth, self.rim_width
+        a = 0.5 * self.length
+        b = 0.5 * self.width
+        depth = self.depth
+        wide = self.rim_width
         rho = np.hypot(x / a, y / b)
         bowl = np.clip(1.0 - rho**2, 0.0, None)
         if self.shape in HOLLOWS:
@@ -206,13 +209,16 @@ def lay(
     an edge crosses, the height is zero. Where faults overlap, heights add up, and a warning says so. Refused
     are those that no contact on so many lines meets, and those longer than the circumference.
     """
-    result, overlap, edges = np.zeros(shape), False, None
+    result = np.zeros(shape)
+    overlap = False
+    edges = None
     if any(fault.shape in HOLLOWS for fault in faults):
         edges = Edges(np.full(shape, FAR), np.zeros(shape), np.zeros(shape), spacing)
     for fault in faults:
         _check_laid(fault, shape, spacing)
         for rows, along, across in _places(fault, shape, spacing):
-            laid, under = fault.heights(along, across), np.mod(rows, shape[0])
+            laid = fault.heights(along, across)
+            under = np.mod(rows, shape[0])
             if edges is not None and fault.shape in HOLLOWS:
                 sound = _lay_edge(edges, fault, under, (along, across))
                 laid = np.where(sound, np.maximum(laid, 0.0), laid)
@@ -228,8 +234,10 @@ def lay(
 def _check_laid(fault: Fault, shape: tuple[int, int], spacing: tuple[float, float]) -> None:
     """Refuse a fault that no contact on the surface meets, or that is longer than it."""
     (rows, lines), (dx, dy), (length, width) = shape, spacing, fault.size
-    name, around = f"of the fault, a {fault.shape}", rows * dx
-    received, most = f"{fault.offset * 1e3:.4g} mm", 0.5 * (lines * dy + width)
+    name = f"of the fault, a {fault.shape}"
+    around = rows * dx
+    received = f"{fault.offset * 1e3:.4g} mm"
+    most = 0.5 * (lines * dy + width)
     allowed = f"less than {most * 1e3:.4g} mm: contacts under these loads reach no farther"
     met = abs(fault.offset) < most
     require(met, f"offset {name}", received, allowed, "Move it towards the middle of the raceway.")

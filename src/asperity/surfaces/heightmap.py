@@ -48,7 +48,8 @@ class Heights:
         At most 32 lines, each with at least 20 times as many points; such a file knows no distance across of
         lines.
         """
-        few, many = min(self.heights.shape), max(self.heights.shape)
+        few = min(self.heights.shape)
+        many = max(self.heights.shape)
         return self.heights.ndim == 2 and few <= MOST_LINES and many >= SLENDER * few
 
     def levelled(self, degree: int | str = "plane") -> Self:
@@ -107,7 +108,8 @@ class Heights:
 
         points = " × ".join(map(str, self.heights.shape))
         missing = f", {percent(self.missing_share)} without a height" if self.missing_share else ""
-        size, spacing = lengths(self._sides, "mm"), lengths(self.spacing, "um")
+        size = lengths(self._sides, "mm")
+        spacing = lengths(self.spacing, "um")
         rms = lengths(np.nanstd(self.heights), "um")
         return f"{points} points, {size}, {spacing} apart, rms height {rms}{missing}"
 
@@ -382,7 +384,8 @@ def _is_fixed(array: Array) -> bool:
 def _window(what: str, start: float, size: float, step: float, points: int) -> slice:
     allowed = f"from 0 to {points * step:.6g} m, at least {2 * step:.6g} m long"
     start, size = (real(what, each, f"lengths in m, {allowed}") for each in (start, size))
-    first, count = round(start / step), round(size / step)
+    first = round(start / step)
+    count = round(size / step)
     inside = first >= 0 and count >= 2 and first + count <= points
     require(inside, what, f"{size} m from {start} m", allowed, "Choose a smaller piece inside it.")
     return slice(first, first + count)

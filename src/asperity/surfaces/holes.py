@@ -49,15 +49,18 @@ def _equations(heights: Array, missing: NDArray[np.bool_], spacings: Array) -> t
     count = int(missing.sum())
     number = np.full(heights.shape, -1, dtype=np.int32)
     number[missing] = np.arange(count)
-    diagonal, right = np.zeros(count), np.zeros(count)
+    diagonal = np.zeros(count)
+    right = np.zeros(count)
     matrix = sparse.csr_array((count, count))
     for axis, spacing in enumerate(spacings):
         weight = (spacings.max() / spacing) ** 2
-        points, z = np.moveaxis(number, axis, 0), np.moveaxis(heights, axis, 0)
+        points = np.moveaxis(number, axis, 0)
+        z = np.moveaxis(heights, axis, 0)
         for here, there, z_there in ((points[:-1], points[1:], z[1:]), (points[1:], points[:-1], z[:-1])):
             mine = here >= 0  # each point is here once
             diagonal[here[mine]] += weight
-            known, unknown = mine & (there < 0), mine & (there >= 0)
+            known = mine & (there < 0)
+            unknown = mine & (there >= 0)
             right[here[known]] += weight * z_there[known]
             pairs = here[unknown], there[unknown]
             coupling = np.full(len(pairs[0]), -weight)

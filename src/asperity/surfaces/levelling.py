@@ -56,7 +56,8 @@ def band_limit(surface: S, longest: float | None = None, shortest: float | None 
     data (a regression of degree zero): a constant passes unchanged, but within half a cut-off of an edge a
     slope is bent. Level or remove the form first, or cut the margin off afterwards.
     """
-    heights, spacings = surface.heights, np.atleast_1d(np.asarray(surface.spacing))
+    heights = surface.heights
+    spacings = np.atleast_1d(np.asarray(surface.spacing))
     for name, cut_off in (("longest", longest), ("shortest", shortest)):
         if cut_off is not None:
             allowed = f"at least two samples, {2.0 * spacings.max():.4g} m, and finite"
@@ -99,10 +100,13 @@ def resample(surface: S, spacing: float | tuple[float, float]) -> S:
     interpolated. A finer grid gains points but no shorter wavelengths. The points are the centres of the new
     cells that fit in the area, counted from its first edge.
     """
-    heights, old = surface.heights, np.atleast_1d(surface.spacing)
-    complete, received = not np.isnan(heights).any(), f"{surface.missing_share:.2%} missing points"
+    heights = surface.heights
+    old = np.atleast_1d(surface.spacing)
+    complete = not np.isnan(heights).any()
+    received = f"{surface.missing_share:.2%} missing points"
     require(complete, "surface to resample", received, "complete heights", "Use fill first.")
-    new, size = np.broadcast_to(np.asarray(spacing, dtype=np.float64), (heights.ndim,)), old * heights.shape
+    new = np.broadcast_to(np.asarray(spacing, dtype=np.float64), (heights.ndim,))
+    size = old * heights.shape
     fits = (new > 0.0).all() and (new * 2.0 <= size * (1.0 + 1e-9)).all()
     require(fits, "spacing", spacing, f"above zero, at most half the surface, {size.min() / 2.0:.4g} m")
     for axis, (old_step, new_step) in enumerate(zip(old, new, strict=True)):
@@ -124,7 +128,8 @@ def _resample_axis(heights: Array, old_step: float, new_step: float, axis: int) 
     padded[..., :terms] = series[..., :terms] * (dense / points)
     values = scipy.fft.idct(padded, type=2, axis=-1)
     centres = (np.arange(dense) + 0.5) * (length / dense)
-    before, beyond = slice(MIRRORED - 1, None, -1), slice(None, -MIRRORED - 1, -1)
+    before = slice(MIRRORED - 1, None, -1)
+    beyond = slice(None, -MIRRORED - 1, -1)
     mirrored = np.concatenate([values[..., before], values, values[..., beyond]], axis=-1)
     positions = np.concatenate([-centres[before], centres, 2 * length - centres[beyond]])
     spline = scipy.interpolate.make_interp_spline(positions, mirrored, k=5, axis=-1)
@@ -138,7 +143,8 @@ def _without_polynomial(heights: Array, degree: int) -> Array:
     and large maps stay in memory.
     """
     powers = [p for p in product(range(degree + 1), repeat=heights.ndim) if sum(p) <= degree]
-    received, allowed = f"{np.isfinite(heights).sum()} valid points", f"at least {len(powers)} for this form"
+    received = f"{np.isfinite(heights).sum()} valid points"
+    allowed = f"at least {len(powers)} for this form"
     require(np.isfinite(heights).sum() >= len(powers), "surface", received, allowed)
     others = [_legendre(0, n, n, degree) for n in heights.shape[1:]]
     across = math.prod(heights.shape[1:])
@@ -152,9 +158,11 @@ def _without_polynomial(heights: Array, degree: int) -> Array:
         factors = [[basis[:, k] for basis, k in zip(bases, power, strict=True)] for power in powers]
         return [reduce(np.multiply.outer, each) for each in factors]
 
-    matrix, right = np.zeros((len(powers), len(powers))), np.zeros(len(powers))
+    matrix = np.zeros((len(powers), len(powers)))
+    right = np.zeros(len(powers))
     for piece in pieces(PIECE):
-        known, of_piece = np.isfinite(heights[piece]), terms(piece)
+        known = np.isfinite(heights[piece])
+        of_piece = terms(piece)
         matrix += [[np.sum(a * b, where=known) for a in of_piece] for b in of_piece]
         right += [np.sum(term * heights[piece], where=known) for term in of_piece]
     weights = np.linalg.lstsq(matrix, right, rcond=None)[0]
@@ -189,16 +197,19 @@ def rotated(surface: "HeightMap", direction: float) -> "HeightMap":
         swapped = surface.spacing[::-1] if round(turns) % 2 else surface.spacing
         return replace(surface, heights=np.rot90(surface.heights, -round(turns)), spacing=swapped)
     received = f"{surface.missing_share:.2%} missing points"
-    complete, remedy = surface.missing_share == 0.0, "Use fill first."
+    complete = surface.missing_share == 0.0
+    remedy = "Use fill first."
     require(complete, "map to turn", received, "complete heights, or quarter turns", remedy)
-    lengths, step = (surface.x[-1], surface.y[-1]), min(surface.spacing)
+    lengths = (surface.x[-1], surface.y[-1])
+    step = min(surface.spacing)
     sides = inscribed(lengths[0], lengths[1], direction)
     counts = [math.floor(side / step * (1 + ROUNDING)) + 1 for side in sides]
     received = f"{math.degrees(direction):.4g} degrees on a map of {surface.shape[0]} x {surface.shape[1]}"
     allowed = "one that leaves two points or more along each side"
     require(min(counts) >= 2, "direction", received, allowed)
     along, across = (step * (np.arange(n) - 0.5 * (n - 1)) for n in counts)
-    cos, sin = math.cos(direction), math.sin(direction)
+    cos = math.cos(direction)
+    sin = math.sin(direction)
     x = 0.5 * lengths[0] + along[:, None] * cos - across * sin
     y = 0.5 * lengths[1] + along[:, None] * sin + across * cos
     kx, ky = (min(ORDER, n - 1) for n in surface.shape)  # the spline needs more points than its degree
@@ -212,7 +223,8 @@ def inscribed(length: float, width: float, angle: float) -> tuple[float, float]:
     The first side lies at the angle to the length. Either two opposite corners touch the long sides, or all
     four corners touch: a c + b s = length and a s + b c = width, c and s the absolute cosine and sine.
     """
-    cos, sin = abs(math.cos(angle)), abs(math.sin(angle))
+    cos = abs(math.cos(angle))
+    sin = abs(math.sin(angle))
     short = min(length, width)
     if short <= 2.0 * sin * cos * max(length, width) or abs(cos - sin) < ROUNDING:
         sides = 0.5 * short / sin, 0.5 * short / cos

@@ -51,7 +51,8 @@ def gaussian_correlation(deviates: Array, heights: Array, correlation: Array) ->
     """
     weight = np.exp(-deviates * deviates / 2.0)
     weight /= weight.sum()
-    previous, current = np.zeros_like(deviates), np.ones_like(deviates)
+    previous = np.zeros_like(deviates)
+    current = np.ones_like(deviates)
     coefficients = []
     for k in range(ORDERS):  # normalised Hermite polynomials
         previous, current = current, (deviates * current - np.sqrt(k) * previous) / np.sqrt(k + 1.0)
@@ -99,7 +100,8 @@ def likeness(
 @lru_cache(maxsize=2)  # heights are read-only, and a path and its strips are made from the same maps
 def _likeness(maps: tuple[HeightMap, ...], spacing: float | tuple[float, float] | None) -> Likeness:
     levelled = _prepared(maps, spacing)
-    heights, steps = [one.heights for one in levelled], levelled[0].spacing
+    heights = [one.heights for one in levelled]
+    steps = levelled[0].spacing
     table = height_table(np.concatenate([each.ravel() for each in heights]))
     correlation = gaussian_correlation(*table, _correlation(heights, steps))
     sources = ", ".join(dict.fromkeys(one.source for one in levelled if one.source))
@@ -150,7 +152,8 @@ def _spectrum(
 ) -> Array:
     """Half spectrum of the heights, m²; its mean over the grid is what it explains of their variance."""
     shares = [(min(spacing) / step) ** 2 for step in spacing]
-    power, weight = np.zeros((grid[0], grid[1] // 2 + 1)), 0.0
+    power = np.zeros((grid[0], grid[1] // 2 + 1))
+    weight = 0.0
     for heights in maps:
         inner = heights[1:-1, 1:-1]
         along = heights[2:, 1:-1] + heights[:-2, 1:-1] - 2.0 * inner

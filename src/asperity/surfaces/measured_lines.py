@@ -51,7 +51,13 @@ def process(
     applied after it counts that effect twice in part. Leave "curvature" out for laws that solve the contact
     on the heights themselves.
     """
-    done, lifted, highest, trimmed, filled, removed, changed = [], [], [], 0, 0, 0, 0
+    done = []
+    lifted = []
+    highest = []
+    trimmed = 0
+    filled = 0
+    removed = 0
+    changed = 0
     for profile in lines:
         if profile.spacing > COARSEST_SPACING * (1.0 + 1e-6):
             coarse = f"spacing {rounded(profile.spacing * 1e3)} mm, more than the 1 mm of EN 15610"
@@ -64,7 +70,8 @@ def process(
         received = f"{missing} missing points inside {line.source or 'the line'}"
         remedy = "Fill them, or cut a piece without."
         require("fill" in steps or not missing, "measured line", received, "a line without gaps", remedy)
-        trimmed, filled = trimmed + len(profile.heights) - len(line.heights), filled + missing
+        trimmed = trimmed + len(profile.heights) - len(line.heights)
+        filled = filled + missing
         line = line.filled()
         if "spikes" in steps:
             line, spikes, points = remove_spikes(line)
@@ -96,7 +103,8 @@ def _lift(rolled: Array, heights: Array) -> tuple[float, float]:
 def trim(profile: Profile) -> Profile:
     """Cut missing points off both ends."""
     known = np.isfinite(profile.heights)
-    first, stop = int(np.argmax(known)), len(known) - int(np.argmax(known[::-1]))
+    first = int(np.argmax(known))
+    stop = len(known) - int(np.argmax(known[::-1]))
     return replace(profile, heights=profile.heights[first:stop], start=None)
 
 
@@ -109,7 +117,8 @@ def remove_spikes(profile: Profile) -> tuple[Profile, int, int]:
     feet. EN 15610:2009 (spike removal): curvature and height are the standard's; the feet are our reading of
     where a spike ends.
     """
-    heights, count = profile.heights, len(profile.heights)
+    heights = profile.heights
+    count = len(profile.heights)
     bend = np.diff(heights, 2)
     sharp = np.zeros(count, dtype=bool)
     sharp[1:-1] = bend < SPIKE_CURVATURE * profile.spacing**2
@@ -118,17 +127,22 @@ def remove_spikes(profile: Profile) -> tuple[Profile, int, int]:
     foot[:-1] &= bend[:-1] >= bend[1:]
     del bend
     feet = np.concatenate([[0], np.flatnonzero(foot) + 1, [count - 1]])
-    cut, removed, changed = heights.copy(), 0, 0
+    cut = heights.copy()
+    removed = 0
+    changed = 0
     for number in range(0, len(feet) - 1, TOGETHER) if sharp.any() else ():
         some = feet[number : number + TOGETHER + 1]
-        first, last, points = some[0], some[-1], np.diff(some)
+        first = some[0]
+        last = some[-1]
+        points = np.diff(some)
         chord = np.interp(np.arange(first, last), some, heights[some])
         rise = np.maximum.reduceat(heights[first:last] - chord, some[:-1] - first)
         spikes = np.logical_or.reduceat(sharp[first:last], some[:-1] - first)
         spikes &= rise > (points * profile.spacing) ** 2 / SPIKE_SCALE
         within = np.repeat(spikes, points)
         cut[first:last][within] = chord[within]
-        removed, changed = removed + int(spikes.sum()), changed + int((points[spikes] - 1).sum())
+        removed = removed + int(spikes.sum())
+        changed = changed + int((points[spikes] - 1).sum())
     cut.flags.writeable = False  # it need not be copied
     return replace(profile, heights=cut), removed, changed
 
@@ -140,7 +154,8 @@ def roll_over(profile: Profile, radius: float = ROLLED_RADIUS) -> Profile:
     carries. EN 15610:2009 (curvature processing). Contact is found at points of the line: the height between
     them is off by at most spacing²/8R, 0.3 µm at 1 mm.
     """
-    heights, count = profile.heights, len(profile.heights)
+    heights = profile.heights
+    count = len(profile.heights)
     depth = min(float(np.ptp(heights)), radius)
     touched = math.ceil(math.sqrt(depth * (2.0 * radius - depth)) / profile.spacing)
     reach = min(touched, math.floor(radius / profile.spacing), count - 1)
@@ -164,14 +179,16 @@ def _upper_envelope(heights: Array, arc: Array) -> Array:
     those between the points of its neighbours.
     """
     count, reach = len(heights), len(arc) - 1
-    envelope, highest = np.empty(count), np.zeros(count, dtype=np.int64)
+    envelope = np.empty(count)
+    highest = np.zeros(count, dtype=np.int64)
     distances = (1 << n for n in reversed(range((count - 1).bit_length())))
     halved = ((distance, np.arange(distance, count, 2 * distance)) for distance in distances)
     for distance, places in chain([(count, np.zeros(1, dtype=np.int64))], halved):
         low = np.where(places < distance, 0, highest[places - distance])
         behind = np.minimum(places + distance, count - 1)
         high = np.where(places + distance < count, highest[behind], count - 1)
-        low, high = np.maximum(low, places - reach), np.minimum(high, places + reach)
+        low = np.maximum(low, places - reach)
+        high = np.minimum(high, places + reach)
         sizes = np.maximum(high - low, 0) + 1
         starts = np.cumsum(sizes) - sizes
         points = np.arange(sizes.sum()) + np.repeat(low - starts, sizes)
@@ -232,7 +249,8 @@ def _levels(lines: list[Profile]) -> tuple[Array, Array]:
     """Wavelengths, m, and levels, dB re 1 µm, of levelled lines, mean over their powers."""
     if len(lines) == 1:
         return band_levels_of(lines[0])
-    heights, spacing = np.array([line.heights for line in lines]), lines[0].spacing
+    heights = np.array([line.heights for line in lines])
+    spacing = lines[0].spacing
     return band_levels_of(HeightMap(heights.T, (spacing, spacing)))
 
 
@@ -265,7 +283,9 @@ def bring_into_register(profiles: Sequence[Profile]) -> Register:
     raise the correlation by 0.2.
     """
     lines = common_length(profiles)
-    aligned, turned, shifts = [lines[0]], [False], [0]
+    aligned = [lines[0]]
+    turned = [False]
+    shifts = [0]
     for line in lines[1:]:
         backwards, shift = _best_match(aligned[-1], line)
         aligned.append(np.roll(line[::-1] if backwards else line, shift))

@@ -113,7 +113,8 @@ class AroundTexture:
 
     def line(self, rows: int, seed: int) -> NDArray[np.complex128]:
         """Complex amplitudes (rows // 2 + 1,), m, of waves per turn: a line is their real part, summed."""
-        found, last = np.zeros(rows // 2 + 1, dtype=complex), rows // 2 - 1
+        found = np.zeros(rows // 2 + 1, dtype=complex)
+        last = rows // 2 - 1
         highest = max((*self.waves, self.last_order if self.waviness else 1))
         remedy = "Leave out waves that are shorter than the contacts, or add them as roughness."
         require(highest <= last, "waves per turn", highest, f"at most {last}, by two cells a wave", remedy)
@@ -155,10 +156,14 @@ def closed_trace(trace: ArrayLike) -> tuple[Array, Array]:
     """
     what = "roundness trace"
     angle, deviation = finite_array(what, trace, "finite angles, rad, and deviations, m", shape=(None, 2)).T
-    steps, jumps = np.diff(angle), np.abs(np.diff(deviation))
+    steps = np.diff(angle)
+    jumps = np.abs(np.diff(deviation))
     require(len(angle) >= 8 and (steps > 0.0).all(), what, "few or falling angles", "8 or more, rising")
-    turned, turn, widest = angle[-1] - angle[0], 2.0 * math.pi, float(steps.max())
-    received, allowed = f"{math.degrees(turned):.6g} deg", "one turn, 360 deg, or one step less"
+    turned = angle[-1] - angle[0]
+    turn = 2.0 * math.pi
+    widest = float(steps.max())
+    received = f"{math.degrees(turned):.6g} deg"
+    allowed = "one turn, 360 deg, or one step less"
     once = turn - 1.5 * widest <= turned <= turn + 1e-3 * widest
     require(once, what, received, allowed, "Trim it to one turn.")
     open_by = abs(float(deviation[-1] - deviation[0]))
@@ -206,7 +211,8 @@ class Raceway:
         object.__setattr__(self, "spacing", two_lengths("spacing of the raceway", self.spacing))
         shape = np.shape(self.heights)
         for name, expected in (("heights", (None, None)), ("line", shape[:1]), ("faults", shape)):
-            given, what = getattr(self, name), f"{name} of the raceway"
+            given = getattr(self, name)
+            what = f"{name} of the raceway"
             values = np.zeros(shape[: len(expected)]) if given is None else given
             object.__setattr__(self, name, finite_array(what, values, "finite heights", shape=expected))
         allowed = "8 rows or more, and an odd number of lines, so that one is the middle"
@@ -246,7 +252,8 @@ class Raceway:
             fields = (self.edges.distance, self.edges.normal, self.edges.drop)
             distance, normal, drop = (sampled(each, 1) for each in fields)
             edges = Edges(distance, normal, drop, spacing)
-        heights, faults = sampled(self.heights + self.line[:, None], 3), sampled(self.faults, 1)
+        heights = sampled(self.heights + self.line[:, None], 3)
+        faults = sampled(self.faults, 1)
         steps = self.circumference / count, spacing[1]
         return type(self)(heights, steps, faults=faults, edges=edges)
 
@@ -266,7 +273,8 @@ def raceway(
     heights.
     """
     rows, lines = shape
-    received, allowed = f"{rows} × {lines} points", f"at most {MOST_POINTS} points"
+    received = f"{rows} × {lines} points"
+    allowed = f"at most {MOST_POINTS} points"
     remedy = "Lengthen the shortest wavelength of the roughness, or enlarge the smallest fault."
     require(rows * lines <= MOST_POINTS, "surface of the raceway", received, allowed, remedy)
     waves = texture.line(rows, seed) * (0.5 * rows)

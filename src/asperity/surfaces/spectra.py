@@ -30,7 +30,8 @@ def _complete(surface: HeightMap | Profile) -> Array:
 
 
 def _require_complete(surface: HeightMap | Profile) -> None:
-    received, allowed = f"{surface.missing_share:.2%} missing points", "complete heights for a spectrum"
+    received = f"{surface.missing_share:.2%} missing points"
+    allowed = "complete heights for a spectrum"
     require(not np.isnan(surface.heights).any(), "surface", received, allowed, "Use fill first.")
 
 
@@ -78,7 +79,8 @@ def texture_direction(surface: HeightMap) -> float:
     a power that is chance.
     """
     qx, qy, density = psd_2d(surface)
-    q, angle = np.hypot(qx[:, None], qy[None, :]), np.arctan2(qy[None, :], qx[:, None]) % np.pi
+    q = np.hypot(qx[:, None], qy[None, :])
+    angle = np.arctan2(qy[None, :], qx[:, None]) % np.pi
     inside = (q >= 3.0 * max(qx[1] - qx[0], qy[1] - qy[0])) & (q <= min(-qx[0], -qy[0]))
     degrees = np.rint(np.degrees(angle[inside])).astype(np.intp) % 180
     power = smooth = np.bincount(degrees, (q**2 * density)[inside], minlength=180)
@@ -118,7 +120,8 @@ def lag_products(heights: Array, reach: int) -> Array:
     Of shape (2 reach + 1, 2 (columns//2) + 1), zero lag in the middle.
     """
     (rows, columns), workers = heights.shape, thread_count()
-    side, length = columns // 2, fft.next_fast_len(rows + reach, real=True)  # what wraps is beyond the lags
+    side = columns // 2
+    length = fft.next_fast_len(rows + reach, real=True)  # what wraps is beyond the lags
     width = fft.next_fast_len(columns + side)
     spectrum = fft.rfft(heights, length, axis=0, workers=workers)
     spectrum = fft.fft(spectrum, width, axis=1, overwrite_x=True, workers=workers)
@@ -145,10 +148,12 @@ def lengths_of(correlation: Array, spacing: tuple[float, float]) -> tuple[float,
     The correlation (odd, odd) holds mean products of heights, zero lag in the middle; lags and warning are as
     those of `autocorrelation_lengths`.
     """
-    middle, step = np.array(correlation.shape) // 2, np.asarray(spacing)
+    middle = np.array(correlation.shape) // 2
+    step = np.asarray(spacing)
     lobe = correlation / correlation[tuple(middle)]
     coefficients = scipy.ndimage.spline_filter(lobe, order=3, mode="mirror")
-    lengths, open_ended = [], False
+    lengths = []
+    open_ended = False
     for angle in np.radians(np.arange(0.0, 180.0)):
         direction = np.array([np.cos(angle), np.sin(angle)])
         limit = float(np.min(middle * step / np.maximum(np.abs(direction), 1e-12)))

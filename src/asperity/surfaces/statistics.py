@@ -83,7 +83,8 @@ def areal_statistics(surface: HeightMap, bandwidth: tuple[float, float] | None =
     """
     square = _square_slopes(surface.heights, surface.spacing)
     slopes = {"dq": np.sqrt(_mean(square)), "dr": _mean(np.sqrt(1.0 + square)) - 1.0}
-    whole, texture = cleaning.nearly_complete(surface), dict.fromkeys(("al", "tr", "td"), np.nan)
+    whole = cleaning.nearly_complete(surface)
+    texture = dict.fromkeys(("al", "tr", "td"), np.nan)
     if whole is not None:
         shortest, longest = spectra.autocorrelation_lengths(whole)
         texture = {"al": shortest, "tr": shortest / longest, "td": spectra.texture_direction(whole)}
@@ -103,13 +104,15 @@ def profile_statistics(
     where no seven are in a row.
     """
     values = _amplitudes(*_powers(profile.heights))
-    mean, count = _mean_height(profile.heights), profile.heights.size
+    mean = _mean_height(profile.heights)
+    count = profile.heights.size
     points = max(1, min(round(section / profile.spacing) if section else count // 5, count))
     sections = profile.heights[: count // points * points].reshape(-1, points)
     peaks = np.fmax.reduce(sections, axis=1) - mean
     valleys = np.fmin.reduce(sections, axis=1) - mean
     whole = np.isfinite(peaks)
-    peak, valley = float(peaks[whole].mean()), float(-valleys[whole].mean())
+    peak = float(peaks[whole].mean())
+    valley = float(-valleys[whole].mean())
     values |= {"t": values.pop("z"), "z": peak + valley, "p": peak, "v": valley, "dq": _rms_slope_of(profile)}
     means = f", mean of {whole.sum()} sections of {1e3 * points * profile.spacing:.4g} mm"
     band = bandwidth or (2.0 * profile.spacing, profile.size)
@@ -149,12 +152,17 @@ def _mean_height(heights: Array) -> float:
 
 def _powers(heights: Array) -> tuple[Array, float]:
     """Means of |z|, z², z³ and z⁴ about the mean, and the total height."""
-    mean, sums, count, low, high = _mean_height(heights), np.zeros(4), 0, np.inf, -np.inf
+    mean = _mean_height(heights)
+    sums = np.zeros(4)
+    count = 0
+    low = np.inf
+    high = -np.inf
     for piece in _known(heights):
         z = piece - mean
         sums += [np.abs(z).sum(), *(np.sum(z**n) for n in (2, 3, 4))]
         count += z.size
-        low, high = min(low, z.min(initial=np.inf)), max(high, z.max(initial=-np.inf))
+        low = min(low, z.min(initial=np.inf))
+        high = max(high, z.max(initial=-np.inf))
     require(sums[0], "surface", "equal heights everywhere", "a surface with roughness")
     return sums / count, float(high - low)
 
@@ -186,7 +194,9 @@ def _square_slopes(heights: Array, spacing: tuple[float, float]) -> Array:
 
 def _rms_slope_of(line: Profile) -> float:
     """Rms slope of a line by the seven-point formula, of all points with three neighbours on either side."""
-    total, known, count = 0.0, 0, len(line.heights)
+    total = 0.0
+    known = 0
+    count = len(line.heights)
     for first in range(0, count - 2 * MARGIN, PIECE):
         slopes = _slopes(line.heights[first : first + PIECE + 2 * MARGIN], line.spacing, 0)
         total += float(np.nansum(slopes**2))
@@ -206,7 +216,8 @@ def _slopes(heights: Array, spacing: float, axis: int) -> Array:
 
 def material_ratio_curve(heights: Array, points: int = 201) -> tuple[Array, Array]:
     """Material ratio (points,), 0 to 1, and the heights, m, that this share of the points reach or exceed."""
-    ratio, known = np.linspace(0.0, 1.0, points), heights[np.isfinite(heights)]
+    ratio = np.linspace(0.0, 1.0, points)
+    known = heights[np.isfinite(heights)]
     return ratio, np.quantile(known, 1.0 - ratio, overwrite_input=True)
 
 
@@ -222,7 +233,8 @@ def stratified(heights: Array, mean: float = 0.0) -> dict[str, float]:
     rising = heights[np.isfinite(heights)]
     rising.sort()
     rising -= mean
-    falling, count = rising[::-1], rising.size
+    falling = rising[::-1]
+    count = rising.size
     width = min(max(2, round(CORE * count)), count - 1)
     first = _flattest(falling, width)
     core = falling[first : first + width + 1]
@@ -274,18 +286,23 @@ def survey_strip(strip: Strip, segment: int, first: int = 0, stop: int | None = 
     """
     stop = strip.shape[0] if stop is None else stop
     bounds = _bounds(strip, first, stop, segment)
-    total, low, high = 0.0, np.inf, -np.inf
+    total = 0.0
+    low = np.inf
+    high = -np.inf
     for start, end in bounds:
         heights = strip.rows(start, end)
         total += float(heights.sum())
-        low, high = min(low, float(heights.min())), max(high, float(heights.max()))
+        low = min(low, float(heights.min()))
+        high = max(high, float(heights.max()))
     del heights
     points = (stop - first) * strip.shape[1]
     mean, reach = total / points, min(end - start for start, end in bounds) // 2
 
     def sums(start: int, end: int) -> tuple[Array, ...]:
-        before, beyond = max(first, start - MARGIN), min(stop, end + MARGIN)
-        rows, inner = strip.rows(before, beyond) - mean, slice(start - before, end - before)
+        before = max(first, start - MARGIN)
+        beyond = min(stop, end + MARGIN)
+        rows = strip.rows(before, beyond) - mean
+        inner = slice(start - before, end - before)
         return *_sums(rows, inner, strip.spacing, segment), spectra.lag_products(rows[inner], reach)
 
     added = reduce(lambda these, those: tuple(map(np.add, these, those)), starmap(sums, bounds))
@@ -305,7 +322,8 @@ def survey_strip(strip: Strip, segment: int, first: int = 0, stop: int | None = 
 
 def _bounds(strip: Strip, first: int, stop: int, segment: int) -> list[tuple[int, int]]:
     """First and last rows of pieces of nearly one length."""
-    rows, least = stop - first, max(segment, 2 * MARGIN + 1)
+    rows = stop - first
+    least = max(segment, 2 * MARGIN + 1)
     require(rows >= least, "strip to survey", f"{rows} rows", f"at least {least} rows")
     longest = max(PIECE // strip.shape[1], FEWEST_ROWS, 2 * segment)
     edges = np.linspace(first, stop, -(-rows // longest) + 1).astype(int)

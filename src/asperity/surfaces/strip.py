@@ -58,7 +58,10 @@ class Fields:
         full = self._length + size > BYTES_KEPT or self.nbytes + size > BYTES_IN_MEMORY
         if full and len(self._held) >= self._fewest:
             self._close()
-            self._held, self._file, self._length, self.nbytes = {}, None, 0, 0
+            self._held = {}
+            self._file = None
+            self._length = 0
+            self.nbytes = 0
         if self._in_memory:
             self._hold(name, heights)
             return
@@ -104,7 +107,9 @@ class Rows:
     """Heights (nx, ny), m, in memory as a strip, without copying or checking them; spacing (dx, dy), m."""
 
     def __init__(self, heights: Array, spacing: tuple[float, float] = (1.0, 1.0)) -> None:
-        self.heights, self.spacing, self.shape = heights, spacing, (heights.shape[0], heights.shape[1])
+        self.heights = heights
+        self.spacing = spacing
+        self.shape = (heights.shape[0], heights.shape[1])
 
     def rows(self, first: int, stop: int) -> Array:
         """Heights of the rows first … stop − 1, m."""
@@ -115,7 +120,10 @@ class Raised:
     """A strip with heights added to it: `added` for rows first … stop − 1, (stop − first, ny or 1), m."""
 
     def __init__(self, strip: Strip, added: Callable[[int, int], Array]) -> None:
-        self.strip, self.added, self.shape, self.spacing = strip, added, strip.shape, strip.spacing
+        self.strip = strip
+        self.added = added
+        self.shape = strip.shape
+        self.spacing = strip.spacing
 
     def rows(self, first: int, stop: int) -> Array:
         """Heights of the rows first … stop − 1, m."""

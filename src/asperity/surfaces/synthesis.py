@@ -53,7 +53,8 @@ def extend(
     it is mirrored or repeated. `what` names the record in messages.
     """
     values = np.asarray(heights, dtype=np.float64)
-    n, index = len(values), np.arange(start, start + rows)
+    n = len(values)
+    index = np.arange(start, start + rows)
     if how == "repeat":
         return close(values, crossfade)[np.mod(index, n)]
     if how == "mirror":
@@ -198,7 +199,9 @@ class SelfAffine:
 
 def drawn_out(anisotropy: float, lay: float) -> Array:
     """Matrix that draws a circle out and turns it by a lay, rad."""
-    stretch, cosine, sine = np.sqrt(anisotropy), np.cos(lay), np.sin(lay)
+    stretch = np.sqrt(anisotropy)
+    cosine = np.cos(lay)
+    sine = np.sin(lay)
     return np.array([[stretch * cosine, -sine / stretch], [stretch * sine, cosine / stretch]])
 
 
@@ -212,7 +215,8 @@ class AffineRange:
     @cached_property
     def tile(self) -> "AffineTile":
         """Tile of the range; no smaller than the correlation of waves that are cut off at the shortest."""
-        surface, least = self.surface, start_of(self.number)
+        surface = self.surface
+        least = start_of(self.number)
         shortest = start_of(range_of(1.0 / surface.shortest) + 1)
         reach = np.maximum(np.hypot(*drawn_out(surface.anisotropy, surface.lay).T), least / shortest)
         along, across = (TILE * reach).tolist()
@@ -257,7 +261,8 @@ class AffineRange:
                 rows = found[first : first + step]
                 there = slice(*np.searchsorted(members.along, (first, first + step)).tolist())
                 columns = members.across[there] + beside
-                low, high = columns.min(initial=len(turns)), columns.max(initial=0) + 1
+                low = columns.min(initial=len(turns))
+                high = columns.max(initial=0) + 1
                 box = np.zeros((len(rows), max(high - low, 0)), np.complex128)
                 box[members.along[there] - first, columns - low] = noise[there]
                 rows[:, lines] += box @ basis[low:high]
@@ -294,7 +299,8 @@ def waves_of(tile: AffineTile) -> MembersOfRange:
     """Waves of a range on a tile."""
     count, beside = tile.most
     y = np.arange(-beside, beside + 1)
-    step, parts = max(1, TOGETHER // len(y)), []
+    step = max(1, TOGETHER // len(y))
+    parts = []
     for first in range(0, count + 1, step):
         x = np.arange(first, min(first + step, count + 1))[:, None]
         qx, qy = x / tile.size[0], y / tile.size[1]
@@ -439,7 +445,8 @@ class LikeMaps:
 
     def waves(self, tile: int, across: Array) -> Waves:
         """Complex amplitudes (k, ny) of a tile at places across (ny,), m."""
-        found, tiling = [], self.across
+        found = []
+        tiling = self.across
         basis = dict[int, Waves]()
         turns = 2.0 * np.pi / tiling.length * to_and_fro(self._amplitudes.shape[1] // 2)[:, None]
         for side in tiling.touching(across.min(), across.max()):

@@ -210,7 +210,8 @@ def interpolated(fine: Array, place: Array, weight: Array | float = 1.0) -> Arra
     """Heights (n, ny), m: the real part of Σ waves[i] exp(2πi·i·place), places in periods, times weights."""
     from scipy.sparse import csr_array
 
-    points, count = len(fine) - TAPS, len(place)
+    points = len(fine) - TAPS
+    count = len(place)
     at = place * points
     first = np.ceil(at - 0.5 * TAPS)
     share = _kernel(first - (at - 0.5 * TAPS)) * np.broadcast_to(weight, count)[:, None]

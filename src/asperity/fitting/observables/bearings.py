@@ -15,7 +15,9 @@ from asperity.fitting.observable import Collected, Measured, Observable, TriedCa
 from asperity.schema import bearing
 from asperity.structures.ball_bearing import PARTS
 
-TONE, VELOCITY, LINE = "bearing tone", "bearing band velocity", "envelope line"
+TONE = "bearing tone"
+VELOCITY = "bearing band velocity"
+LINE = "envelope line"
 NEAR = 0.02
 """By which part a line may lie beside the frequency that was measured: cages slip."""
 _FREQUENCY = Column("frequency", "Hz")

@@ -17,7 +17,9 @@ from asperity.fitting.observables.decay_rates import keys_of_track, no_track
 from asperity.scenes import schema
 from asperity.schema import Entry, spectra
 
-SOUND, FORCE, ACCELERATION = "sound pressure level", "contact force level", "acceleration level"
+SOUND = "sound pressure level"
+FORCE = "contact force level"
+ACCELERATION = "acceleration level"
 _FREQUENCY = Column("frequency", "Hz")
 _BY_CHANCE = 1.0
 """Standard deviation of a level that one record gives, dB, where nothing tells it."""
@@ -25,7 +27,8 @@ _BY_CHANCE = 1.0
 
 def levels_in_bands(collected: Collected, name: str, at: Array) -> Array:
     """Levels of a run (..., n) in bands by their centres (n,), Hz; NaN in those that it has not."""
-    bands, held = collected[f"{name}_band"], collected[name]
+    bands = collected[f"{name}_band"]
+    held = collected[name]
     apart = np.abs(np.log10(at[:, None] / bands))
     nearest = apart.argmin(axis=1)
     return np.where(apart.min(axis=1) < 0.03, held[..., nearest], np.nan)

@@ -81,7 +81,8 @@ def _transfer(path: Path) -> list[Measured]:
     pairs = np.unique(rows[:, 1:3], axis=0)
     for at, driven in pairs:
         own = rows[(rows[:, 1] == at) & (rows[:, 2] == driven)]
-        frequency, values = own[:, 0], own[:, 3] + 1j * own[:, 4]
+        frequency = own[:, 0]
+        values = own[:, 3] + 1j * own[:, 4]
         refuse_disorder(path, frequency)
         mobility = values * (2j * np.pi * frequency) ** power
         places = (float(at), float(driven))

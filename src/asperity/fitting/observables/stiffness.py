@@ -32,7 +32,8 @@ def _predict(trial: TriedCase, measured: Measured) -> Values:
     """Tangent stiffness dF/dr at each load; NaN beyond the loads that were computed."""
     load, stiffness = trial.collected["contact_load"], trial.collected["contact_stiffness"]
     known = (load > 0.0) & (stiffness > 0.0)
-    place, over = np.log(load[known]), np.log(stiffness[known])
+    place = np.log(load[known])
+    over = np.log(stiffness[known])
     return np.exp(np.interp(np.log(measured.at), place, over, left=np.nan, right=np.nan))
 
 

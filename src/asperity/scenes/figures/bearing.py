@@ -105,7 +105,8 @@ def load_zone(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
         f"{in_newtons(outer.max())}. The bearing turns anticlockwise. Triangles: accelerometers."
     )
     for part, faults in every_fault.items():
-        parts, moved = data.words(tree, bearing.PART), data.values(tree, bearing.MODULATION)
+        parts = data.words(tree, bearing.PART)
+        moved = data.values(tree, bearing.MODULATION)
         turns = ", where the record begins" if part in parts and moved[parts.index(part)] > 0.0 else ""
         one, which = ("Diamond", "fault") if len(faults) == 1 else ("Diamonds", "faults")
         yield f"{one}: the {which} of the {NAMES[part]}{turns}."
@@ -114,11 +115,13 @@ def load_zone(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
 def _faults(tree: DataTree) -> dict[str, list[tuple[float, int]]]:
     """Angles of the first fault of each section, rad, and numbers of their balls, by the part they are on."""
     found: dict[str, list[tuple[float, int]]] = {}
-    name, count = "fault", 1
+    name = "fault"
+    count = 1
     while (part := data.case_words(tree, f"{name}.on")) in NAMES:
         angle = data.case_quantity(tree, f"{name}.angle", "rad") or 0.0
         found.setdefault(part, []).append((angle, int(data.case_words(tree, f"{name}.ball") or 1)))
-        name, count = f"fault[{count + 1}]", count + 1
+        name = f"fault[{count + 1}]"
+        count = count + 1
     return found
 
 
@@ -140,9 +143,11 @@ def _one_turn(tree: DataTree) -> slice:
 )
 def ball_turn(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
     """Forces over the azimuth, and behind them those at rest."""
-    degrees, places = _degrees(lines.at), _degrees(data.values(tree, bearing.AZIMUTH).ravel())
+    degrees = _degrees(lines.at)
+    places = _degrees(data.values(tree, bearing.AZIMUTH).ravel())
     back = np.abs(np.diff(degrees, prepend=degrees[0])) > 180.0  # where the turn begins again on the left
-    order, loads = np.argsort(places), data.values(tree, bearing.BALL_LOAD).reshape(2, -1)
+    order = np.argsort(places)
+    loads = data.values(tree, bearing.BALL_LOAD).reshape(2, -1)
     drawn = [
         chart.Line(
             places[order], load[order], f"static, {ring} ring", chart.INK, RINGS[ring][1], 2.4, opacity=0.4
@@ -272,7 +277,8 @@ QUIET = load_zone, velocity_spectrum, envelope_spectrum, ring_acceleration
 
 def bands_table(tree: DataTree) -> ReportTable:
     """Velocities in the bands in which bearings are judged, by law and sensor; of parts alone below."""
-    found, sensors = data.values(tree, bearing.BAND_VELOCITY), np.degrees(data.values(tree, bearing.SENSOR))
+    found = data.values(tree, bearing.BAND_VELOCITY)
+    sensors = np.degrees(data.values(tree, bearing.SENSOR))
     rows = [(law, f"at {at:.0f}°") for law in data.laws(tree, bearing.BAND_VELOCITY) for at in sensors]
     velocities = found.reshape(len(rows), -1)
     if data.present(tree, bearing.ALONE_VELOCITY):
@@ -300,7 +306,8 @@ def bands_table(tree: DataTree) -> ReportTable:
 
 def lines_table(tree: DataTree) -> ReportTable:
     """Tones of the parts, and what the envelope has of them, by law."""
-    tones, turning = data.values(tree, bearing.TONE), data.number(tree, bearing.TURNING) or 1.0
+    tones = data.values(tree, bearing.TONE)
+    turning = data.number(tree, bearing.TURNING) or 1.0
     columns = {
         "part": text_cells(NAMES[part] for part in data.words(tree, bearing.PART)),
         "tone / Hz": number_cells(tones, "{:.2f}"),

@@ -23,7 +23,8 @@ class Effects:
     """
 
     def __init__(self, found: xarray.Dataset) -> None:
-        level, chance = found[schema.EFFECT_LEVEL.name], found.get(schema.EFFECT_LEVEL_DEVIATION.name)
+        level = found[schema.EFFECT_LEVEL.name]
+        chance = found.get(schema.EFFECT_LEVEL_DEVIATION.name)
         names = list(map(str, found[level.dims[0]].values)) if level.dims else [""]
         chance = level * 0.0 if chance is None else chance
         named = (level, chance, found[schema.EFFECT.name], found[schema.EFFECT_ERROR.name])
@@ -34,7 +35,8 @@ class Effects:
         self.parts = [names[n] for n in order]
         self.variants = list(map(str, found[schema.EFFECT_VARIANT.name].values))
         self.left_out = list(map(str, found[schema.LEFT_OUT.name].values))
-        self.what, self.units = str(level.attrs["long_name"]), data.written_units(str(level.attrs["units"]))
+        self.what = str(level.attrs["long_name"])
+        self.units = data.written_units(str(level.attrs["units"]))
         reason = str(level.attrs.get("wheel", "computed"))
         self.silent = "" if reason == "computed" else f"The {WHOLE} is without the wheel: {reason}."
         self.law = str(found.attrs[schema.EFFECT_LAW.name])
@@ -67,7 +69,8 @@ class Effects:
             for k, n in enumerate(order)
         ]
         sentence = ", ".join(told).strip() or "no change that is sure"
-        before, after = self.loudest(), self.loudest(effect)
+        before = self.loudest()
+        after = self.loudest(effect)
         return f"{sentence[:1].upper()}{sentence[1:]}{f'; loudest then: {after}' if after != before else ''}."
 
     def loudest(self, effect: Numbers | float = 0.0) -> str:

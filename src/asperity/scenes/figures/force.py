@@ -53,10 +53,12 @@ def force_bands(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
         panels.styled(tree, lines.at, lines.of(entry), markers=True)
         for entry in (spectra.FORCE_LEVEL, REFERENCE_LEVEL.entry)
     )
-    label, every = "contact force level / dB re 1 N", [*levels, *reference]
+    label = "contact force level / dB re 1 N"
+    every = [*levels, *reference]
     yield panels.band_panel(tree, lines, label, every, of=levels, span=100.0, height=3.6)
     under = (*panels.shaded_bands(tree, labelled=False), panels.zero())
-    compared, whole = data.differences(tree), data.stored_variable(tree, TO_REFERENCE)
+    compared = data.differences(tree)
+    whole = data.stored_variable(tree, TO_REFERENCE)
     solved = {} if whole is None else {TO_REFERENCE: str(whole.attrs["reference"])}
     for entry, law in (compared | solved).items():
         less = panels.styled(tree, lines.at, lines.of(entry), markers=True, main=levels[-1].law)
@@ -151,7 +153,8 @@ def _forces(tree: DataTree, lines: Lines, **look: Any) -> Iterator[Panel]:
 def _bars(tree: DataTree, series: Series, time: chart.Numbers, row: int) -> chart.Boxes:
     """Stretches without contact in a row, half a time step longer at either end than from first to last."""
     first, last = panels.stretches(lost(tree, series.law, series.values)).T
-    half, middle = 0.5 * (time[1] - time[0]), np.full(first.shape, float(row))
+    half = 0.5 * (time[1] - time[0])
+    middle = np.full(first.shape, float(row))
     ends = (time[first] - half, time[last] + half, middle - 0.35, middle + 0.35)
     return chart.Boxes(*ends, colour=data.law_entry(tree, series.law).colour, law=series.law)
 
@@ -179,7 +182,8 @@ def force_envelope(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
 def force_peak(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """Contact force of all laws around the largest one of the main law."""
     yield from _forces(tree, lines)
-    force, law = _main_force(tree), data.main_law(tree, rolling.CONTACT_FORCE)
+    force = _main_force(tree)
+    law = data.main_law(tree, rolling.CONTACT_FORCE)
     peak = int(np.nanargmax(force))
     where = f"{data.engineering(force[peak], 'N')} at {data.values(tree, rolling.TIME)[peak]:.4f} s"
     if data.present(tree, rolling.POSITION):

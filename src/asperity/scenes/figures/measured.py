@@ -34,7 +34,8 @@ def over_bands(
     def columns(tree: DataTree) -> Iterator[figure.Series]:
         if not data.present(tree, entry):
             return
-        frequency, band = data.values(tree, at), data.values(tree, spectra.BAND)
+        frequency = data.values(tree, at)
+        band = data.values(tree, spectra.BAND)
         number = np.rint(10.0 * np.log10(frequency / band[0])).astype(int)
         inside = (number >= 0) & (number < len(band))
         found = np.where(inside, data.values(tree, entry)[np.clip(number, 0, len(band) - 1)], np.nan)
@@ -150,11 +151,14 @@ def measured_sound_table(tree: DataTree) -> ReportTable | None:
 def _over_pass_by(tree: DataTree) -> Iterator[figure.Series]:
     """Levels of the main law over the pass-by time, A-weighted, by what radiates; then those measured."""
     own, level = schema.MEASURED_BAND_LEVEL, schema.SOUND_EXPOSURE_LEVEL
-    band, measured = data.values(tree, schema.PASS_BY_BAND), data.values(tree, own)
+    band = data.values(tree, schema.PASS_BY_BAND)
+    measured = data.values(tree, own)
     front, rear = (float(data.stated(tree, end)) for end in (schema.FRONT_TIME, schema.REAR_TIME))
-    weighting, found = a_weighting(band), data.variable_of(tree, level)
+    weighting = a_weighting(band)
+    found = data.variable_of(tree, level)
     for number in data.with_numbers(found, "radiator"):
-        name, values = str(found["radiator"].values[number]), found[0, number].values
+        name = str(found["radiator"].values[number])
+        values = found[0, number].values
         yield figure.Series(name, _SOUND, values - 10.0 * np.log10(rear - front) + weighting, level, name)
     yield figure.Series("measured", _SOUND, measured + weighting, own, "measured")
 
@@ -207,7 +211,8 @@ def _result(tree: DataTree, of: Sources) -> tuple[str, bool | None]:
     limit = data.number(tree, schema.TSI_LIMIT)
     if limit is None:
         return "no limit holds for this receiver and speed", None
-    met, margin = PassByLimit(limit, 0.0, 0.0).met(of.whole), limit - of.whole
+    met = PassByLimit(limit, 0.0, 0.0).met(of.whole)
+    margin = limit - of.whole
     if "wheel" not in of.parts:
         short = f"{abs(margin):.1f} dB {'below' if margin >= 0.0 else 'over'} the {limit:g} dB(A) allowed"
         if met:
@@ -220,7 +225,8 @@ def _result(tree: DataTree, of: Sources) -> tuple[str, bool | None]:
 
 def limit_sentence(tree: DataTree) -> str:
     """Say whether the rolling noise of the vehicle is within its limit; nothing without a type of vehicle."""
-    speed, of = data.number(tree, schema.REFERENCE_SPEED), main_sources(tree, schema.NORMALISED_LEVEL)
+    speed = data.number(tree, schema.REFERENCE_SPEED)
+    of = main_sources(tree, schema.NORMALISED_LEVEL)
     if of is None or speed is None:
         return ""
     alone = "alone" if "wheel" in of.parts else "without the wheel"
@@ -244,7 +250,8 @@ def _verdict(met: object) -> Cell:
 
 def limits_table(tree: DataTree) -> ReportTable | None:
     """Level and limit of the vehicle, by source, and the conditions of ISO 3095."""
-    conditions, speed = _conditions(tree), data.number(tree, schema.REFERENCE_SPEED)
+    conditions = _conditions(tree)
+    speed = data.number(tree, schema.REFERENCE_SPEED)
     rows: list[dict[str, Any]] = []
     for place, entry in _PLACES.items():
         if speed is not None and (of := main_sources(tree, entry)) is not None:

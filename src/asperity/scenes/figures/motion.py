@@ -230,7 +230,8 @@ def acceleration_answers(tree: DataTree) -> Answers | None:
     if main not in data.laws(tree, schema.ACCELERATION_LEVEL):
         return None
     rms = np.sqrt(np.nanmean(data.of_law(tree, schema.ACCELERATION, main) ** 2, axis=1))
-    levels, bands = data.of_law(tree, schema.ACCELERATION_LEVEL, main), data.values(tree, BAND)
+    levels = data.of_law(tree, schema.ACCELERATION_LEVEL, main)
+    bands = data.values(tree, BAND)
     weighted = a_weighted_total(levels, bands)
     sensors = data.variable_of(tree, schema.ACCELERATION)["sensor"].values.tolist()
     places = [f"x = {sensor:g} m" for sensor in sensors]

@@ -29,7 +29,8 @@ STANDARD, STANDARD_A = schema.SOUND_POWER_LEVEL, schema.SOUND_POWER_LEVEL_A
 ALONE, ALONE_A = schema.SINGLE_FORCE_POWER_LEVEL, schema.SINGLE_FORCE_POWER_LEVEL_A
 """The same of what would radiate under one force alone, where something moves sideways."""
 PASSING = schema.PASS_BY_LEVEL
-TRACK, OF_TRACK = "rail and sleepers", ("rail", schema.RAIL_SIDEWAYS, "sleepers")
+TRACK = "rail and sleepers"
+OF_TRACK = ("rail", schema.RAIL_SIDEWAYS, "sleepers")
 _POWER = "sound power level / dB(A) re 1 pW"
 _OF_STANDARD = {"track": (1.5, 1.5), "wheel": (6, 1.5, 1.5, 1.5)}
 """Dashes of its sources, in grey."""
@@ -276,7 +277,8 @@ def pass_by_table(tree: DataTree) -> ReportTable:
     columns = {"law": text_cells(names, "name"), "what radiates": text_cells(radiating)}
     for head, entry in SINGLE_NUMBERS.items():
         if data.present(tree, entry):
-            found, own = data.variable_of(tree, entry), heard.get(head) or np.nan
+            found = data.variable_of(tree, entry)
+            own = heard.get(head) or np.nan
             level = [float(found.sel(law=law, radiator=part)) for law, part in shown]
             columns[head] = number_cells([*level, own] if beside else level, "{:.1f}")
             columns[head] += number_cells([level[0] - own] if beside else [], data.signed)
@@ -295,7 +297,8 @@ def noise_answers(tree: DataTree) -> headline.Answers | None:
     """Sound power of the main law by both models, and what decides it."""
     if (powers := sound_power_table(tree, main=True)) is None:
         return None
-    of, by_tables = main_sources(tree, OWN_A), by_part(tree, STANDARD_A)
+    of = main_sources(tree, OWN_A)
+    by_tables = by_part(tree, STANDARD_A)
     cards = []
     if of is not None:
         held = "from vibration" if "wheel" in of.parts else "from vibration, without the wheel"
@@ -325,13 +328,15 @@ def _by_vibration(tree: DataTree, of: Sources | None) -> str:
     """Say what radiates most by its own vibration, or what is about equal, and in which bands."""
     if of is None or not of.bodies:
         return ""
-    names, without = of.loudest, "" if "wheel" in of.parts else " without the wheel"
+    names = of.loudest
+    without = "" if "wheel" in of.parts else " without the wheel"
     sideways = schema.RAIL_SIDEWAYS in of.parts
     levels = " and ".join(
         f"{of.bodies[name][0]:.1f}{' (sideways too)' if sideways and name == RAIL else ''}" for name in names
     )
     of_whole = f"{levels} of {_written(of.whole)} of sound power{without}"
-    share, parts = "half of it", [part for name in names for part in BODIES[name] if part in of.parts]
+    share = "half of it"
+    parts = [part for name in names for part in BODIES[name] if part in of.parts]
     if len(names) > 1:
         share = "half of these"
     return f"By vibration {decides(names)}: {of_whole}, {share} in {_bands(tree, parts)}."
@@ -339,7 +344,8 @@ def _by_vibration(tree: DataTree, of: Sources | None) -> str:
 
 def _bands(tree: DataTree, parts: Sequence[str]) -> str:
     """Bands that hold half the A-weighted sound power of what radiates together, by the main law."""
-    band, names = data.values(tree, BAND), parts_of(tree, OWN)
+    band = data.values(tree, BAND)
+    names = parts_of(tree, OWN)
     levels = data.of_law(tree, OWN, data.main_law(tree, OWN))[[names.index(part) for part in parts]]
     return headline.deciding_bands(band, energy_sum(levels, axis=0) + a_weighting(band))
 
@@ -381,7 +387,8 @@ def wheel_table(tree: DataTree) -> ReportTable:
         for each in (schema.WHEEL_MODE_FREQUENCY, schema.WHEEL_MODE_DAMPING, schema.WHEEL_MODE_DIAMETERS)
     )
     order = np.argsort(-level, kind="stable")
-    shown, rest = order[:LOUDEST], order[LOUDEST:]
+    shown = order[:LOUDEST]
+    rest = order[LOUDEST:]
     more = [count_of(len(rest), "other")] * (len(rest) > 0)
     names = [f"{frequency[k]:.0f} Hz" if frequency[k] else "rigid motion" for k in shown]
     levels = np.append(level[shown], [energy_sum(level[rest])] * (len(rest) > 0))

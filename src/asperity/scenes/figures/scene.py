@@ -55,7 +55,8 @@ def _columns(tree: DataTree) -> Iterator[Series]:
     found["semi-axis of the contact along"] = data.number(tree, contact.HERTZ_RADIUS)
     found["semi-axis of the contact across"] = data.number(tree, contact.HERTZ_RADIUS_ACROSS)
     if data.present(tree, contact.PX, contact.PY):
-        x, y = data.values(tree, contact.PX), data.values(tree, contact.PY)
+        x = data.values(tree, contact.PX)
+        y = data.values(tree, contact.PY)
         found |= {
             f"window {way}": float(at[-1] - at[0]) * len(at) / (len(at) - 1)
             for way, at in (("along", x), ("across", y))
@@ -86,19 +87,24 @@ def _side(tree: DataTree, of: Lengths) -> Panel:
     """All contacts where the record begins, on what is rolled over."""
     begin, end = of["record begins at x"], of["record ends at x"]
     contacts = [begin + offset for offset in _beginning(of, "contact") or [0.0]]
-    looked_at, spacing = _beginning(of, "sensor") + _beginning(of, "point"), of.get("track sleeper spacing")
+    looked_at = _beginning(of, "sensor") + _beginning(of, "point")
+    spacing = of.get("track sleeper spacing")
     if spacing:
-        left, right = min(contacts) - BAYS * spacing, max(contacts) + BAYS * spacing
-        under, depth = _track(tree, left, right, spacing), RAIL + PAD + SLEEPER + BALLAST
+        left = min(contacts) - BAYS * spacing
+        right = max(contacts) + BAYS * spacing
+        under = _track(tree, left, right, spacing)
+        depth = RAIL + PAD + SLEEPER + BALLAST
     else:
         right = of.get("beam length") or max(end + max(contacts) - begin, *contacts, *looked_at, 1e-3)
-        left, depth = 0.0, of.get("beam height") or BEAM
+        left = 0.0
+        depth = of.get("beam height") or BEAM
         under = [_block(left, -depth, right, depth)]
         marker = SUPPORTS.get(data.case_words(tree, "beam.support"))
         if marker and "beam length" in of:
             ends = np.array([left, right]), np.full(2, -depth)
             under.append(Line(*ends, colour=MUTED, width=0.0, marker=marker))
-    span, path = right - left, np.clip([begin, end], left, right)
+    span = right - left
+    path = np.clip([begin, end], left, right)
     radius = max(_radius(of), SEEN * span)
     marks = [*under, Line(path, np.zeros(2), colour=VERMILLION, width=2.5)]
     for x in contacts:
@@ -114,7 +120,8 @@ def _side(tree: DataTree, of: Lengths) -> Panel:
 def _track(tree: DataTree, left: float, right: float, spacing: float) -> list[Mark]:
     """Rail, and below it pads, sleepers and ballast; without sleepers that move a slab."""
     look: dict[str, Any] = {"colour": MUTED, "dashes": (3, 2)}
-    width, bottom = right - left, -RAIL - PAD - SLEEPER
+    width = right - left
+    bottom = -RAIL - PAD - SLEEPER
     sleepers = sleepers_between(tree, left, right, spacing)
     marks: list[Mark] = [_block(left, -RAIL, width, RAIL, **look)]
     spread = data.case_words(tree, "track.continuous") == "yes"
@@ -156,10 +163,12 @@ def _patch(of: Lengths) -> list[Panel]:
 @figure("The scene", None, _columns)
 def scene(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """What rolls over what, from the side, and the contact from above."""
-    of, speed = _lengths(lines), data.number(tree, rolling.SPEED)
+    of = _lengths(lines)
+    speed = data.number(tree, rolling.SPEED)
     yield _side(tree, of)
     yield from _patch(of)
-    count, radius = len(_beginning(of, "contact")) or 1, _radius(of)
+    count = len(_beginning(of, "contact")) or 1
+    radius = _radius(of)
     contacts = "One contact" if count == 1 else f"{count} contacts"
     told = f"{contacts}, rolled from {of['record begins at x']:.4g} m to {of['record ends at x']:.4g} m (red)"
     told += f" at {rounded(speed)} m/s" if speed else ""
@@ -191,7 +200,8 @@ def _view(x: Axis, y: Axis, marks: list[Mark], title: str, **place: Any) -> Pane
 
 def _block(left: float, bottom: float, length: float, height: float, fill: str = GRID, **look: Any) -> Shape:
     """A body as a rectangle, in the look of a `Shape`."""
-    x, y = left + length * np.array([0, 1, 1, 0]), bottom + height * np.array([0, 0, 1, 1])
+    x = left + length * np.array([0, 1, 1, 0])
+    y = bottom + height * np.array([0, 0, 1, 1])
     return Shape(x, y, fill, **look)
 
 

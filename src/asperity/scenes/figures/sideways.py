@@ -18,7 +18,8 @@ from asperity.schema import rolling, spectra
 from asperity.structures.squeal import FREE_OF_AXLE
 from asperity.written_numbers import count_of, rounded
 
-FORCE, _DOTS = schema.LATERAL_FORCE_LEVEL, (1.5, 1.5)
+FORCE = schema.LATERAL_FORCE_LEVEL
+_DOTS = (1.5, 1.5)
 
 
 @figure(
@@ -106,7 +107,8 @@ def sideways_table(tree: DataTree) -> ReportTable:
         "lateral force, rms / N": number_cells(data.values(tree, schema.LATERAL_FORCE_SPREAD), in_digits(3)),
         "beyond friction": text_cells(map(data.in_percent, data.values(tree, schema.SLIP_SHARE)), "number"),
     }
-    alone, there = schema.SINGLE_FORCE_POWER_LEVEL_A, data.laws(tree, schema.SINGLE_FORCE_POWER_LEVEL_A)
+    alone = schema.SINGLE_FORCE_POWER_LEVEL_A
+    there = data.laws(tree, schema.SINGLE_FORCE_POWER_LEVEL_A)
     if there:
         levels = np.array([data.of_law(tree, alone, law) for law in laws])
         for name, found in zip(schema.SINGLE_FORCES, levels.T, strict=True):
@@ -123,7 +125,9 @@ def sideways_table(tree: DataTree) -> ReportTable:
 
 # --- how a wheel creeps on a rail: stick and slip, friction in time, and which of its modes squeal
 
-FRICTION, HEAT, GROWTH = schema.FRICTION_FORCE, schema.FRICTION_POWER, schema.GROWTH_RATE
+FRICTION = schema.FRICTION_FORCE
+HEAT = schema.FRICTION_POWER
+GROWTH = schema.GROWTH_RATE
 
 
 @figure(
@@ -193,7 +197,8 @@ def _shapes(tree: DataTree) -> Array:
 
 def _once(tree: DataTree, motions: Iterable[int]) -> list[int]:
     """Of the motions the first of each mode at rest: as a wheel turns, there are two of most."""
-    shape, first = _shapes(tree), dict[float, int]()
+    shape = _shapes(tree)
+    first = dict[float, int]()
     for n in motions:
         first.setdefault(float(shape[n]), n)
     return list(first.values())
@@ -283,7 +288,8 @@ def friction_table(tree: DataTree) -> ReportTable:
     power = schema.SPIN_MOMENT, schema.SAMPLE_HEAT, schema.MEAN_FRICTION_POWER
     stick, slip, moment, heat, mean_heat = (data.values(tree, entry) for entry in (*area, *power))
     in_time = [data.of_law(tree, FRICTION, law) for law in laws]
-    samples, none = [f"sample {n}" for n in range(1, len(stick))], np.full(len(laws), np.nan)
+    samples = [f"sample {n}" for n in range(1, len(stick))]
+    none = np.full(len(laws), np.nan)
     forces = np.vstack([data.values(tree, schema.SAMPLE_FRICTION), np.mean(in_time, axis=-1)]).T
     columns = {
         "contact": text_cells(["smooth", *samples, *(f"in time, {law}" for law in laws)]),

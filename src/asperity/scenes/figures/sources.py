@@ -91,7 +91,8 @@ def main_sources(tree: DataTree, entry: Entry) -> Sources | None:
     levels = _known(found, data.of_law(tree, entry, laws[0]))
     if WHOLE not in levels:
         return None
-    deviation, chance = schema.RADIATED_POWER_DEVIATION, {}
+    deviation = schema.RADIATED_POWER_DEVIATION
+    chance = {}
     if (of := data.stored_variable(tree, deviation)) is not None and laws[0] in data.laws(tree, deviation):
         chance = _known(of, data.of_law(tree, deviation, laws[0]))
     return Sources(levels.pop(WHOLE), levels, chance)

@@ -64,10 +64,12 @@ def sleeper_tones(tree: DataTree, low: float, high: float) -> list[Mark]:
 
 def sleeper_times(tree: DataTree, start: float, end: float, unit: float) -> list[Mark]:
     """Short rules where the wheel passes sleepers between two times, on an axis in `unit` s."""
-    spacing, speed = data.number(tree, schema.SLEEPER_SPACING), data.number(tree, rolling.SPEED)
+    spacing = data.number(tree, schema.SLEEPER_SPACING)
+    speed = data.number(tree, rolling.SPEED)
     if not spacing or not speed or not data.present(tree, rolling.POSITION):
         return []
-    time, position = data.values(tree, rolling.TIME), data.values(tree, rolling.POSITION)
+    time = data.values(tree, rolling.TIME)
+    position = data.values(tree, rolling.POSITION)
     first, last = np.interp([start, end], time, position)
     sleepers = sleepers_between(tree, first, last, spacing)
     return [_short((time[0] + (sleepers - position[0]) / speed) / unit)]
@@ -123,7 +125,8 @@ def receptance(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     if phases := [s for s in lines.lines if s.units == "rad"]:
         turned = [replace(s, values=(np.degrees(s.values) + 180) % 360 - 180) for s in phases]
         turns = tuple((degrees, f"{degrees:g}") for degrees in (-180.0, -90.0, 0.0, 90.0, 180.0))
-        phase, rules = Axis("phase / °", -190.0, 190.0, ticks=turns), natural_rules(tree, *ends, named=False)
+        phase = Axis("phase / °", -190.0, 190.0, ticks=turns)
+        rules = natural_rules(tree, *ends, named=False)
         yield Panel(along, phase, (*rules, *panels.styled(tree, lines.at, turned)), height=2.2)
     yield (
         "Displacement per force at the point of the force, both positive downwards, time factor e^{+iωt}: "
@@ -238,7 +241,8 @@ def roughness(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     lowest = max(np.nanmax(series.values) for series in parts) - SPAN
     levels = [np.where(series.values >= lowest, series.values, np.nan) for series in parts]
     kept = np.isfinite(levels).any(axis=0)  # bands in which some part reaches into the span
-    wavelength, speed = lines.at[kept], data.number(tree, rolling.SPEED)
+    wavelength = lines.at[kept]
+    speed = data.number(tree, rolling.SPEED)
     drawn = [
         Line(wavelength, level[kept], series.name, *_LOOKS.get(series.name, (MUTED, (), 1.4, "^")))
         for series, level in zip(parts, levels, strict=True)

@@ -149,7 +149,8 @@ def read_all(
 
 def _chosen(surfaces: list[guards.Surface], index: int | None, path: str | Path) -> list[guards.Surface]:
     """The sample of an index, or all where there is none."""
-    what, last = f"index of a sample in {path}", len(surfaces) - 1
+    what = f"index of a sample in {path}"
+    last = len(surfaces) - 1
     if index is None:
         return surfaces
     return [surfaces[whole(what, index, f"0 to {last}", at_least=0, at_most=last)]]
@@ -173,7 +174,8 @@ def _own(file: Path, head: bytes, extension: str) -> tuple[str, Reader]:
     """What a file that begins so is called, and what reads it, of the formats that this program knows."""
     content = _by_content(file, head)
     if extension in OWN:
-        received, allowed = f"a file that starts with {head[:8]!r}", f"a {OWN[extension][0]} file"
+        received = f"a file that starts with {head[:8]!r}"
+        allowed = f"a {OWN[extension][0]} file"
         remedy = "Export it again, or correct the extension."
         require(content == extension, file.name, received, allowed, remedy)
     as_text = extension in READ_AS_TEXT and (extension not in MAY_BE_BINARY or text.holds_text(file))
@@ -223,7 +225,8 @@ def _finished(
     for name, flag in (("transpose", transpose), ("fill", fill), ("spikes", spikes)):
         require(isinstance(flag, bool | np.bool_), name, shown(flag), "True or False")
         for surface in surfaces if flag and name in of_maps else ():
-            is_map, received = isinstance(surface, HeightMap), f"a line, {surface.source}"
+            is_map = isinstance(surface, HeightMap)
+            received = f"a line, {surface.source}"
             require(is_map, name, received, "a height map", of_maps[name])
     done: list[Any] = list(surfaces)
     if spikes:

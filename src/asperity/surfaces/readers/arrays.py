@@ -80,7 +80,8 @@ def only_one(names: list[str], source: str, what: str = "heights") -> str:
     """Return the only array's name that could be meant, or raise an `InputError` that lists the choice."""
     likely = [name for name in names if name.lower() not in COORDINATES] or names[::-1]
     remedy = advice("array", likely[0], "Choose one, as in", "Keep one in the file.") if names else ""
-    named, received = f"arrays of {what} in {source}", listed(names) or "none"
+    named = f"arrays of {what} in {source}"
+    received = listed(names) or "none"
     require(len(names) == 1, named, received, "exactly one", remedy)
     return names[0]
 
@@ -101,7 +102,8 @@ def array_in(data: bytes, file: str) -> NDArray[Any]:
     stream = io.BytesIO(data)
     version = np.lib.format.read_magic(stream)
     readers = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
-    received, allowed = f"npy version {version}", "version 1.0 or 2.0"
+    received = f"npy version {version}"
+    allowed = "version 1.0 or 2.0"
     require(version in readers, file, received, allowed, "Save it with numpy.save.")
     shape, fortran, kind = readers[version](stream)
     allowed, remedy = "numbers; Python objects are never unpickled", "Save it as a float array."

@@ -70,7 +70,8 @@ def _slope_along(heights: Array, spacing: float) -> float:
 
 def judge_sizes(surface: HeightMap | Profile, hints: Hints) -> None:
     """Refuse a surface whose sizes are beyond belief, with the likely cause, and warn of unusual ones."""
-    what, spacing = surface.source or "surface", float(np.max(surface.spacing))
+    what = surface.source or "surface"
+    spacing = float(np.max(surface.spacing))
     if surface.heights.size >= FEWEST_POINTS and (told := _far_from_others(surface.heights)):
         OutOfRangeWarning.warn(f"{what}: {told}")
     slope = typical_slope(surface) if surface.heights.size >= FEWEST_POINTS else None
@@ -160,7 +161,8 @@ def _rms(surface: HeightMap | Profile) -> float:
 
 def _far_from_others(heights: Array) -> str:
     """Say which single height, of one point or many, is far from all others; empty without one."""
-    flat, sample = heights.reshape(-1), _sample(heights)
+    flat = heights.reshape(-1)
+    sample = _sample(heights)
     middle = float(np.median(sample)) if sample.size else 0.0
     spread = _NORMAL * float(np.median(np.abs(sample - middle))) if sample.size else 0.0
     for end in (float(np.fmin.reduce(flat)), float(np.fmax.reduce(flat))) if spread else ():

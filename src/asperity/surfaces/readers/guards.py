@@ -29,7 +29,8 @@ Surface = HeightMap | Profile
 
 def readable_file(path: str | Path) -> Path:
     """Check that a path is a readable, non-empty file, no pipe and no device, of at most 4 GiB."""
-    file, allowed = file_path("surface file", path, "the path of a file"), "a file with heights"
+    file = file_path("surface file", path, "the path of a file")
+    allowed = "a file with heights"
     received = no_file(file)
     remedies = {"a folder": "Name a file inside it.", "an empty file": "Export it again."}
     require(not received, str(file), received, allowed, remedies.get(received, "Check the path."))
@@ -39,7 +40,8 @@ def readable_file(path: str | Path) -> Path:
     except OSError as error:
         received = f"a file that cannot be read ({error.strerror})"
         raise InputError(str(file), received, allowed, "Check its permissions.") from None
-    allowed, remedy = f"at most {MAX_FILE_BYTES} bytes", "Crop or split the measurement."
+    allowed = f"at most {MAX_FILE_BYTES} bytes"
+    remedy = "Crop or split the measurement."
     require(size <= MAX_FILE_BYTES, f"size of {file.name}", count_of(size, "byte"), allowed, remedy)
     return file
 
@@ -90,7 +92,8 @@ def header_number(
         value = number_in("nan" if text is None else text)
     except ValueError:
         value = math.nan
-    what, received = f"{name} in {source}", "nothing" if text is None else repr(text[:40])
+    what = f"{name} in {source}"
+    received = "nothing" if text is None else repr(text[:40])
     require(math.isfinite(value), what, received, "a finite number", EXPORT)
     require(fits(value), what, value, allowed, EXPORT)
     return value

@@ -102,13 +102,15 @@ class Hints:
     def spacing_in(self, source: str, stated: tuple[float, float] | None = None) -> tuple[float, float]:
         """Return the spacing: the hint, else what the file states, else an `InputError`."""
         remedy = advice("pixel", "1.5 um", "Give it, as in", _HEADING.format("# pixel: 1.5 um"))
-        chosen, allowed = self.pixel or stated, "the distance of neighbouring points"
+        chosen = self.pixel or stated
+        allowed = "the distance of neighbouring points"
         require(chosen, source, "heights without a pixel size", allowed, remedy)
         return chosen or (0.0, 0.0)
 
     def lateral_in(self, source: str, stated: float | None, example: str, lead: str, otherwise: str) -> float:
         """Return the factor of coordinates as `heights_in` does; the rest is as of `advice`."""
-        chosen, remedy = self.pixel_unit or stated or 0.0, advice("pixel_unit", example, lead, otherwise)
+        chosen = self.pixel_unit or stated or 0.0
+        remedy = advice("pixel_unit", example, lead, otherwise)
         require(chosen, source, "coordinates without a unit", "a unit of the coordinates", remedy)
         return chosen
 

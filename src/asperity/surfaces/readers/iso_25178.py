@@ -54,13 +54,15 @@ def read_sdf(path: Path, hints: Hints) -> list[guards.Surface]:
     source = path.name
     hints.refuse(source, "SDF")
     data = path.read_bytes()
-    binary, old = data[:1].lower() == b"b", data[1:4].upper() == OLD
+    binary = data[:1].lower() == b"b"
+    old = data[1:4].upper() == OLD
     header, body = _binary_header(data, source) if binary else _ascii_header(data)
     compression, code, profiles, points, unit, dx, dy = (
         guards.header_number(source, name, header.get(name.lower()), *fits) for name, fits in _FIELDS.items()
     )
     require(compression == 0, source, "compressed data", "Compression = 0", "Export it uncompressed.")
-    kind, shape = SDF_TYPES[int(code)], (int(profiles), int(points))
+    kind = SDF_TYPES[int(code)]
+    shape = (int(profiles), int(points))
     least = np.dtype(kind).itemsize if binary else 2  # a digit and a separator
     count = guards.check_claim(source, shape, least, len(body) + (not binary))
     stored = np.frombuffer(body, kind, count) if binary else _ascii_heights(body, count, source)
@@ -92,7 +94,8 @@ def missing_in(raw: NDArray[Any], kind: str, *, old: bool) -> NDArray[np.bool_]:
     """
     if kind in BEYOND:
         return np.asarray(~(np.abs(raw) < BEYOND[kind]))
-    ends, signed = np.iinfo(kind), np.dtype(kind).kind == "i"
+    ends = np.iinfo(kind)
+    signed = np.dtype(kind).kind == "i"
     if old:
         return np.asarray((raw == ends.max) | np.isnan(raw))
     if signed:
@@ -106,7 +109,8 @@ def _binary_header(data: bytes, source: str) -> tuple[dict[str, str], bytes]:
     if data[1:8].upper() == b"ISO-2.0":
         layouts = sorted([_WIDE, _BINARY], key=lambda layout: not _fits(data, layout))
     size = layouts[0].size
-    received, allowed = count_of(len(data), "byte"), f"a header of {size} bytes"
+    received = count_of(len(data), "byte")
+    allowed = f"a header of {size} bytes"
     require(len(data) >= size, source, received, allowed, guards.EXPORT)
     values = map(str, layouts[0].unpack_from(data)[4:])
     return dict(zip(map(str.lower, _IN_BINARY), values, strict=True)), data[size:]
@@ -136,13 +140,15 @@ def _ascii_header(data: bytes) -> tuple[dict[str, str], bytes]:
 
 def _ascii_heights(body: bytes, points: int, source: str) -> NDArray[Any]:
     text = re.sub(rb"(?i)\bBAD\b", b"nan", body).replace(b",", b" ")
-    heights, start = array("d"), 0
+    heights = array("d")
+    start = 0
     while start < len(text):  # words of all would take many times the memory
         blank = _BLANK.search(text, start + BLOCK)
         end = blank.end() if blank else len(text)
         heights.extend(map(number_in, text[start:end].split()))
         start = end
-    received, allowed = count_of(len(heights), "height"), f"the {points} that its header claims"
+    received = count_of(len(heights), "height")
+    allowed = f"the {points} that its header claims"
     require(len(heights) == points, source, received, allowed, guards.EXPORT)
     return np.frombuffer(heights)
 
@@ -188,7 +194,8 @@ class _Record:
 
     def number(self, axis: str, field: str, default: str | None) -> float:
         """Number of an axis, m; an increment is above zero, across a profile zero."""
-        what, text = f"{field.lower()} of {axis}", self.text(f"{AXES}/{axis}/{field}") or default
+        what = f"{field.lower()} of {axis}"
+        text = self.text(f"{AXES}/{axis}/{field}") or default
         if field == "Offset":
             return guards.header_number(self.source, what, text)
         least = 0.0 if axis == "CY" else math.ulp(0.0)
@@ -197,16 +204,19 @@ class _Record:
     def check_axes(self) -> None:
         """Refuse points that do not lie on a grid along x and y."""
         for axis in ("CX", "CY"):
-            even, received = self.text(f"{AXES}/{axis}/AxisType") != "A", f"points with a {axis} each"
+            even = self.text(f"{AXES}/{axis}/AxisType") != "A"
+            received = f"points with a {axis} each"
             require(even, self.source, received, "a regular grid", "Export it on a regular grid.")
-        rotation, names = f"{AXES}/Rotation", [f"r{i}{j}" for i in "123" for j in "123"]
+        rotation = f"{AXES}/Rotation"
+        names = [f"r{i}{j}" for i in "123" for j in "123"]
         if self.root.find(f"{rotation}/*") is None:
             return
         matrix = [
             guards.header_number(self.source, f"{name} of the rotation", self.text(f"{rotation}/{name}"))
             for name in names
         ]
-        none, allowed = np.allclose(matrix, np.eye(3).ravel(), atol=1e-6), "no rotation of the axes"
+        none = np.allclose(matrix, np.eye(3).ravel(), atol=1e-6)
+        allowed = "no rotation of the axes"
         require(none, f"axes of {self.source}", "a rotation", allowed, "Export it unrotated.")
 
     def heights(self) -> Array:
@@ -214,10 +224,12 @@ class _Record:
         kind = self.text(f"{AXES}/CZ/DataType") or "D"
         what = f"data type of CZ in {self.source}"
         require(kind in X3P_TYPES, what, repr(kind[:20]), "I, L, F or D", guards.EXPORT)
-        unit, offset = self.number("CZ", "Increment", "1"), self.number("CZ", "Offset", "0")
+        unit = self.number("CZ", "Increment", "1")
+        offset = self.number("CZ", "Offset", "0")
         texts = {f"Size{axis}": self.text(f"Record3/MatrixDimension/Size{axis}") for axis in "ZYX"}
         sizes = (guards.header_number(self.source, *item, *guards.WHOLE) for item in texts.items())
-        shape, stored = tuple(map(int, sizes)), np.dtype(X3P_TYPES[kind])
+        shape = tuple(map(int, sizes))
+        stored = np.dtype(X3P_TYPES[kind])
         if written := self.root.findall("Record3/DataList/Datum"):
             z = self._listed(written, shape) * unit + offset
             points = z.size
@@ -235,7 +247,8 @@ class _Record:
 
     def _listed(self, written: list[Element], shape: tuple[int, ...]) -> Array:
         """Heights that stand in the XML itself, as last of the numbers of a point; NaN of an empty one."""
-        points, received = math.prod(shape), f"{count_of(len(written), 'height')} in its list"
+        points = math.prod(shape)
+        received = f"{count_of(len(written), 'height')} in its list"
         require(len(written) == points, self.source, received, f"the {points} of its matrix", guards.EXPORT)
         words = ((each.text or "").rpartition(";")[2].strip() or "nan" for each in written)
         return np.array([number_in(word) for word in words])

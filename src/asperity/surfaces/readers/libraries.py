@@ -75,7 +75,8 @@ def _channel(reader: Any, path: Path, hints: Hints) -> list[guards.Surface]:
     name = reader.default_channel.name if hints.array is None else hints.array
     allowed = f"one of: {listed(list(channels))}"
     require(name in channels, f"array in {path.name}", shown(name), allowed, "Choose a channel.")
-    points, sized = channels[name].nb_grid_pts, channels[name].physical_sizes is not None
+    points = channels[name].nb_grid_pts
+    sized = channels[name].physical_sizes is not None
     few = np.prod(points, dtype=float) <= guards.MAX_POINTS
     allowed = f"at most {guards.MAX_POINTS} points"
     require(few, path.name, f"{points} points", allowed, "Crop or split the measurement.")
@@ -132,14 +133,16 @@ def read_netcdf(path: Path, hints: Hints) -> list[guards.Surface]:
         heights = _decoded(variable, hints.heights_in(source, _unit(variable)), source)
         names = [name.rpartition("/")[2] for name in variable.dimensions]
         within = variable.name.strip("/").rpartition("/")[0]
-        group, steps = opened[within] if within else opened, []
+        group = opened[within] if within else opened
+        steps = []
         for axis, name in enumerate(names[-2:], -len(names[-2:])):
             if hints.pixel is None and name in group.variables:
                 index, step = _placed(group.variables[name], hints, source, name)
                 heights = np.take(heights, np.argsort(index), axis)
                 steps.append(step)
         if len(names) > 1 and names[-1].lower() == "x":
-            heights, steps = np.swapaxes(heights, -1, -2), steps[::-1]
+            heights = np.swapaxes(heights, -1, -2)
+            steps = steps[::-1]
         spacing = (steps[0], steps[-1]) if len(steps) == len(names[-2:]) else None
         return guards.surfaces_of(heights, hints.spacing_in(source, spacing), source)
 
@@ -219,13 +222,15 @@ def _unit(variable: Any) -> float | None:
 
 def _decoded(variable: Any, unit: float, source: str) -> Array:
     """Apply the conventional attributes for missing values, scale and offset."""
-    raw, attributes = np.asarray(variable[...]), variable.attrs
+    raw = np.asarray(variable[...])
+    attributes = variable.attrs
     if str(attributes.get("_Unsigned", "")).lower() == "true" and raw.dtype.kind == "i":
         raw = raw.view(raw.dtype.str.replace("i", "u"))
     missing = _missing(raw, attributes)
     heights = guards.scaled(np.where(missing, np.zeros(1, raw.dtype), raw), 1.0, source)
     heights[missing] = np.nan
-    scale, offset = attributes.get("scale_factor", 1.0), attributes.get("add_offset", 0.0)
+    scale = attributes.get("scale_factor", 1.0)
+    offset = attributes.get("add_offset", 0.0)
     return (heights * float(np.ravel(scale)[0]) + float(np.ravel(offset)[0])) * unit
 
 

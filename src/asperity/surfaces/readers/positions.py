@@ -61,7 +61,8 @@ def _gridded(index: Index, z: Array, shape: tuple[int, ...], source: str) -> Arr
     received = f"{count_of(len(z), 'point')} that would need a grid of {' x '.join(str(n) for n in shape)}"
     dense = math.prod(shape) * SPARSEST <= len(z)
     require(dense, source, received, "points on a regular grid", RESAMPLE)
-    single, received = len(np.unique(index)) == len(index), "several points at one place"
+    single = len(np.unique(index)) == len(index)
+    received = "several points at one place"
     require(single, source, received, "one height per grid point", RESAMPLE)
     heights = np.full((math.prod(shape), *z.shape[1:]), np.nan)
     heights[index] = z
@@ -83,7 +84,8 @@ def _line_by_line(x: Array, y: Array) -> tuple[Array, Array, bool] | None:
         back = np.flatnonzero(steps > 0.0 if falls else steps < 0.0)
         length = int(back[0]) + 1 if len(back) else 0
         if length > 1 and len(fast) % length == 0:
-            within, number = fast.reshape(-1, length), slow.reshape(-1, length)
+            within = fast.reshape(-1, length)
+            number = slow.reshape(-1, length)
             whole = (within == within[0]).all() and (number == number[:, :1]).all()
             if whole and _rises(number[:, 0]):
                 return (within[0], number[:, 0], True) if along_x else (number[:, 0], within[0], False)
@@ -160,7 +162,8 @@ FEWEST_EVEN = 5
 
 def _places_of(rising: Array, *, in_order: bool) -> Index | None:
     """Places of rising coordinates, which may have stood in this order; None where they lie on no line."""
-    each, counted = np.arange(len(rising)), _counted(rising)
+    each = np.arange(len(rising))
+    counted = _counted(rising)
     if _near(rising, each):
         return each
     different = len(np.unique(counted))
@@ -207,7 +210,8 @@ def _between(rising: Array, index: Index, half: Array) -> bool:
 
     How far it stays within all of them is concave in its slope, whose optimum is found by bisection.
     """
-    low, high = rising - half, rising + half
+    low = rising - half
+    high = rising + half
     last = max(int(index[-1]), 1)
     share = min(2.0 * half.max() * last / (rising[-1] - rising[0]), SURE)
     if share ** (len(rising) - 2) > CHANCE:
@@ -219,7 +223,8 @@ def _between(rising: Array, index: Index, half: Array) -> bool:
     for _ in range(BISECTIONS):
         step = 0.5 * sum(steps)
         over, under = high - index * step, low - index * step
-        above, below = int(np.argmin(over)), int(np.argmax(under))
+        above = int(np.argmin(over))
+        below = int(np.argmax(under))
         if over[above] >= under[below]:
             return True
         steps[int(index[below] < index[above])] = step
@@ -252,5 +257,6 @@ def half_digits(coordinates: Array) -> Iterator[Array]:
 
 
 def _refuse_unknown(coordinates: Array, what: str) -> None:
-    finite, received = np.isfinite(coordinates).all(), "missing or infinite coordinates"
+    finite = np.isfinite(coordinates).all()
+    received = "missing or infinite coordinates"
     require(finite, what, received, "a coordinate for each point", RESAMPLE)

@@ -59,7 +59,8 @@ class Dialect:
 
     def numbers(self, text: str) -> array[float] | None:
         """Return the numbers of one line, NaN for missing ones; None if it holds anything else."""
-        row, underlined = array("d"), "-" in text  # as titles are, by dashes alone
+        row = array("d")
+        underlined = "-" in text  # as titles are, by dashes alone
         rest: str | None = text.rstrip("\r\n")
         while rest is not None:
             words = rest.split(self.delimiter, PIECE)
@@ -103,7 +104,8 @@ def read(path: Path, hints: Hints) -> list[guards.Surface]:
     Missing heights: ``NaN``, ``BAD``, ``NA``, ``***`` or nothing. Lines above the numbers and lines that
     start with ``#``, ``%`` or ``//`` are header, see `parsed_header`; a hint is stronger than it.
     """
-    size, allowed = path.stat().st_size, f"at most {amount(MAX_TEXT_BYTES)} of text"
+    size = path.stat().st_size
+    allowed = f"at most {amount(MAX_TEXT_BYTES)} of text"
     remedy = "Crop or split the measurement, or save it as .npy, netCDF or X3P."
     require(size <= MAX_TEXT_BYTES, f"size of {path.name}", amount(size), allowed, remedy)
     content = _unquoted(read_text(path, path.name, "heights as text", largest=size, latin=True))
@@ -202,7 +204,8 @@ def _dialect(sample: list[str], decimal: str | None, source: str) -> Dialect:
         return Dialect(None, True)
     if any(_SURE_COMMA.match(word) for word in words):
         return Dialect(None, True)
-    received, allowed = f"numbers such as {words[-1][:40]!r}", "an unambiguous decimal mark"
+    received = f"numbers such as {words[-1][:40]!r}"
+    allowed = "an unambiguous decimal mark"
     lead = f"Give {spell('decimal', ',')} if the comma is the decimal mark; if it separates columns, give"
     remedy = advice("decimal", ".", lead, "Write decimal points, or semicolons between columns.")
     raise InputError(source, received, allowed, remedy)
@@ -210,7 +213,9 @@ def _dialect(sample: list[str], decimal: str | None, source: str) -> Dialect:
 
 def _table(content: str, dialect: Dialect, source: str) -> tuple[list[str], Array]:
     """Read lines above and among the numbers, and the numbers (rows, columns)."""
-    table, number, decimal = _Table(dialect, source), 0, "," if dialect.decimal_comma else "."
+    table = _Table(dialect, source)
+    number = 0
+    decimal = "," if dialect.decimal_comma else "."
     for lines in blocks_of_lines(content):
         even = even_rows(lines, dialect.delimiter, decimal)
         if even is not None and even.shape[1] == (table.columns or even.shape[1]):
@@ -244,17 +249,16 @@ class _Table:
 
     def take_line(self, number: int, text: str) -> None:
         """Take a line of any kind."""
-        columns, comment = self.columns, text.lstrip().startswith(COMMENT)
+        columns = self.columns
+        comment = text.lstrip().startswith(COMMENT)
         if not comment and self.dialect.is_blank(text, above=not columns):
             self.blanks.append(self.rows)
             return
         row = None if comment else self.dialect.numbers(text)
         if row is None:
             if columns and not comment:
-                received, allowed = (
-                    f"{text.strip()[:60]!r} in line {number}",
-                    "numbers or marks of missing ones",
-                )
+                received = f"{text.strip()[:60]!r} in line {number}"
+                allowed = "numbers or marks of missing ones"
                 raise InputError(self.source, received, allowed, "Correct or remove the line.")
             self.header.append(text)
             self.characters += len(text)
@@ -263,10 +267,8 @@ class _Table:
             return
         self.columns = columns = columns or len(row)
         if len(row) != columns:
-            received, allowed = (
-                f"{count_of(len(row), 'value')} in row {self.rows + 1}",
-                f"{columns}, as in the first row",
-            )
+            received = f"{count_of(len(row), 'value')} in row {self.rows + 1}"
+            allowed = f"{columns}, as in the first row"
             raise InputError(self.source, received, allowed, "Mark missing heights with NaN.")
         self.empty = min(self.empty, self.dialect.empty_at_the_end(text))
         self.values.extend(row)
@@ -299,7 +301,8 @@ def _with_gaps(table: Array, blanks: array[int]) -> Array:
 
 
 def _surfaces(table: Array, header: dict[str, float], hints: Hints, source: str) -> list[guards.Surface]:
-    columns, heading = table.shape[1], 'Write it into the heading, as "x (mm)"'
+    columns = table.shape[1]
+    heading = 'Write it into the heading, as "x (mm)"'
     heights = (table[:, -1] if columns in (2, 3) else table) * hints.heights_in(source, header.get("z"))
     spacing = hints.pixel or ((header["dx"], header["dy"]) if "dx" in header else None)
 
