@@ -130,7 +130,9 @@ class HalfSpace:
         spacing = " × ".join(written(each, "m", "um") for each in self.spacing)
         yields = "elastic" if self.hardness is None else f"hardness {written(self.hardness, 'Pa', 'GPa')}"
         modulus = written(self.modulus, "Pa", "GPa")
-        return f"<HalfSpace: {cells} of {spacing}, E* {modulus}, {yields}, {self.boundary} boundary>"
+        return (
+            f"<{type(self).__name__}: {cells} of {spacing}, E* {modulus}, {yields}, {self.boundary} boundary>"
+        )
 
     @property
     def influence(self) -> Influence:

@@ -58,7 +58,7 @@ class SurfaceFormat:
         some = list(found) if isinstance(found, list | tuple) else [found]
         right = bool(some) and all(isinstance(each, Surface) for each in some)
         require(
-            right, path.name, shown(found), f"a HeightMap or Profile, which the reader of {self.name} makes"
+            right, path.name, shown(found), f"a height map or profile, which the reader of {self.name} makes"
         )
         return some
 

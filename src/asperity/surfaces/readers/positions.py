@@ -163,17 +163,18 @@ FEWEST_EVEN = 5
 def _places_of(rising: Array, *, in_order: bool) -> Index | None:
     """Places of rising coordinates, which may have stood in this order; None where they lie on no line."""
     each = np.arange(len(rising))
-    counted = _counted(rising)
     if _near(rising, each):
         return each
+    times = np.unique(rising, return_counts=True)[1]
+    if times.max() == 1 and _as_printed(rising, each):  # nothing has to be left out
+        return each
+    counted = _counted(rising)
     different = len(np.unique(counted))
     exceptions = (int(counted[-1]) + 1 - different) + (len(counted) - different)
     with_exceptions = _is_dense(counted) and _as_printed(rising, counted)
     if with_exceptions and exceptions <= FEW:
         return counted
-    times = np.unique(rising, return_counts=True)[1]
-    apart = times.max() == 1 or (in_order and times.min() < times.max())
-    if apart and _as_printed(rising, each):
+    if in_order and times.min() < times.max() and _as_printed(rising, each):
         return each
     return counted if with_exceptions else None
 
