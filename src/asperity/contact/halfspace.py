@@ -126,13 +126,11 @@ class HalfSpace:
         self._known = {dtype: influence(table, taps, dtype) for dtype in (np.float64, np.float32)}
 
     def __repr__(self) -> str:
-        cells = f"{self.shape[0]} × {self.shape[1]} {self.cells} cells"
         spacing = " × ".join(written(each, "m", "um") for each in self.spacing)
+        cells = f"{self.shape[0]} × {self.shape[1]} {self.cells} cells of {spacing}"
         yields = "elastic" if self.hardness is None else f"hardness {written(self.hardness, 'Pa', 'GPa')}"
         modulus = written(self.modulus, "Pa", "GPa")
-        return (
-            f"<{type(self).__name__}: {cells} of {spacing}, E* {modulus}, {yields}, {self.boundary} boundary>"
-        )
+        return f"<{type(self).__name__}: {cells}, E* {modulus}, {yields}, {self.boundary} boundary>"
 
     @property
     def influence(self) -> Influence:
