@@ -1,6 +1,7 @@
 """Named changes of a case, what they do to what is heard, and how sure that is."""
 
 import json
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -370,12 +371,14 @@ def test_what_helps_a_bearing_is_told_by_its_velocities(cache, monkeypatch):
     case = as_case(QUIET)
     every = what_helps(case)
     assert every.sweep["seed"] == [1, 2, 3]
-    assert {tuple(member.case.laws) for member in every.members() if member.case} == {("hertz",)}
-    tighter = next(m.case for m in every.members() if m.case and "less clearance" in m.label)
+    members = [member for member in every.members() if member.case]
+    assert {tuple(member.case.laws) for member in members} == {("hertz",)}
+    tighter = next(member.case for member in members if "less clearance" in member.label)
     assert tighter.bearing.clearance == pytest.approx(5e-6)
     chosen = {name: every.sweep["variant"][name] for name in ("all half as wavy", "balls half as wavy")}
     plan = study_of(case, {"variant": chosen})
     monkeypatch.setattr("asperity.studies.effects.what_helps", lambda case: plan)
+    monkeypatch.setattr("asperity.studies.running.study", partial(asperity.study, executor=Here()))
     tree = with_effects(case, asperity.run(case, brief=True))
     found = tree["effects"].to_dataset()
     assert found["judged"].values.tolist()[-1] == "total"
