@@ -54,6 +54,17 @@ def test_the_waves_are_the_superposition_of_many_supports(place):
     assert np.all(np.abs(found - expected).max(axis=(0, 1)) < 2e-6 * np.abs(expected).max(axis=(0, 1)))
 
 
+def test_rail_dampers_damp_no_lateral_wave():
+    """A track that nothing else damps answers sideways as without them, by the wave that runs outwards."""
+    still = replace(UIC60, pad_damping=None, ballast_damping=None, rail_loss_factor=0.0)
+    dampers = {"rail_damper_mass": 15.0, "rail_damper_frequency": 800.0, "rail_damper_loss_factor": 0.35}
+    without, beside = (
+        LateralTrack(each).receptance(FREQUENCIES, 0.1, 0.1) for each in (still, replace(still, **dampers))
+    )
+    assert_allclose(beside, without, rtol=1e-12)
+    assert (without.imag < 0.0).any()  # energy leaves along the rail
+
+
 @pytest.mark.parametrize(("shear", "rotary"), [(math.inf, 0.0), (3e8, 0.04)], ids=["Euler", "Timoshenko"])
 def test_bending_alone_is_that_of_the_vertical_rail(shear, rotary):
     rail = STRAIGHT | {"shear_stiffness": shear, "rotary_inertia": rotary}
