@@ -505,7 +505,3 @@ class BearingUnderLoad(AnyCase):
             received = f"{rounded(steps, 2)} time steps of balls"
             allowed = f"at most {rounded(MOST_STEPS)}"
             yield InputError("duration", received, allowed, "Record several shorter times.")
-
-
-BallBearingCase = BearingUnderLoad
-"""What it was called."""

@@ -2,7 +2,7 @@
 
 import math
 
-from asperity.case.ball_bearing import STEPS_PER_PERIOD, BallBearingCase
+from asperity.case.ball_bearing import STEPS_PER_PERIOD, BearingUnderLoad
 from asperity.case.scene import Case
 from asperity.contact.hertz import Hertz
 from asperity.errors import OutOfRangeWarning
@@ -62,7 +62,7 @@ def doubt_sizes(case: Case, over: object) -> None:
         OutOfRangeWarning.warn(f"The rail yields by {rounded(1e3 * bent)} mm under a wheel at rest: {told}")
 
 
-def doubt_bearing(case: BallBearingCase) -> None:
+def doubt_bearing(case: BearingUnderLoad) -> None:
     """Warn of sizes of a bearing that are hardly meant, and of a given time step that is long."""
     of = case.bearing.bearing
     load = case.radial + case.axial + case.bearing.bearing.preload

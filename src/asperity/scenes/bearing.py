@@ -14,7 +14,7 @@ import xarray
 
 from asperity import diagnostics
 from asperity.arguments import Array
-from asperity.case.ball_bearing import AroundKeys, BallBearingCase
+from asperity.case.ball_bearing import AroundKeys, BearingUnderLoad
 from asperity.diagnostics import ISO_BANDS, LineFamily, Spectrum, band_velocities
 from asperity.errors import InputError, PhysicsWarning, percent, warn_of_findings
 from asperity.laws import Need, spec_of
@@ -84,13 +84,13 @@ SOURCES = (
 class PreparedBearing:
     """A case of a bearing that can be computed."""
 
-    case: BallBearingCase
+    case: BearingUnderLoad
     raceways: tuple[Raceway, Raceway]  # inner and outer one
     balls: tuple[Raceway, ...]  # their surfaces; none where all are smooth
     caught: tuple[warnings.WarningMessage, ...]  # warnings met on the way
 
 
-def _parts(case: BallBearingCase) -> list[tuple[str, Any, float]]:
+def _parts(case: BearingUnderLoad) -> list[tuple[str, Any, float]]:
     """Names of inner and outer raceway and of balls, their sections, and their radii, m."""
     of = case.bearing.bearing
     return [
@@ -100,7 +100,7 @@ def _parts(case: BallBearingCase) -> list[tuple[str, Any, float]]:
     ]
 
 
-def prepare_bearing(case: BallBearingCase, source: str = "case") -> PreparedBearing:
+def prepare_bearing(case: BearingUnderLoad, source: str = "case") -> PreparedBearing:
     """Load the bearing at rest and lay out what is on its parts; refuse what cannot be."""
     errors = list[InputError]()
     made = list[Raceway]()
@@ -128,7 +128,7 @@ def prepare_bearing(case: BallBearingCase, source: str = "case") -> PreparedBear
     return PreparedBearing(case, (made[0], made[1]), tuple(made[2:]), tuple(caught))
 
 
-def _by_key(case: BallBearingCase, part: str, keys: AroundKeys, error: InputError) -> InputError:
+def _by_key(case: BearingUnderLoad, part: str, keys: AroundKeys, error: InputError) -> InputError:
     """An error about what is on a part, by the key of the case that it is about."""
     section = "balls" if part == "ball" else f"{part}_raceway"
     what, _, of = error.what.partition(" of the fault")
@@ -207,7 +207,7 @@ def _cells_over_faults(prepared: PreparedBearing) -> float:
     return found
 
 
-def bearing_rings(case: BallBearingCase) -> BearingRings:
+def bearing_rings(case: BearingUnderLoad) -> BearingRings:
     """Both rings with what they carry, on what holds them; they bend if the case says so."""
     angle = case.static.contact_angle
     inner, held = (
@@ -220,7 +220,7 @@ def bearing_rings(case: BallBearingCase) -> BearingRings:
     return BearingRings(inner, held, *case.bending_rings())
 
 
-def cage_slip(case: BallBearingCase) -> Callable[[Array], Array]:
+def cage_slip(case: BearingUnderLoad) -> Callable[[Array], Array]:
     """Slip of the cage at times (n,), s, drawn anew for each of its turns, and straight between these."""
     least, most = case.cage_slip
     rate = case.kinematics.cage
@@ -294,7 +294,7 @@ TRIED = 0.1
 
 
 def _within_scan(
-    case: BallBearingCase,
+    case: BearingUnderLoad,
     law: str,
     ons: Sequence[OnRaceway],
     once: Callable[[str, Any, Any, float], RolledBearing],
@@ -370,7 +370,7 @@ def bearing_result(
     return result
 
 
-def _draws(case: BallBearingCase) -> Iterator[tuple[str, str, float]]:
+def _draws(case: BearingUnderLoad) -> Iterator[tuple[str, str, float]]:
     """Parts whose surface is drawn, what is drawn, and their radius, m."""
     for name, keys, radius in _parts(case):
         if draw := keys.texture().draw:
@@ -423,7 +423,7 @@ def tones_group(turning: Kinematics) -> Values:
 # --- in time
 
 
-def motion_group(case: BallBearingCase, runs: dict[str, RolledBearing]) -> Values:
+def motion_group(case: BearingUnderLoad, runs: dict[str, RolledBearing]) -> Values:
     """Lay out what was recorded in time, at the sampling rate of the case."""
     (first, *_), balls = runs.values(), np.arange(case.bearing.bearing.balls)
 
@@ -452,7 +452,7 @@ def motion_group(case: BallBearingCase, runs: dict[str, RolledBearing]) -> Value
 # --- what its acceleration says
 
 
-def heard_group(case: BallBearingCase, runs: dict[str, RolledBearing]) -> Values:
+def heard_group(case: BearingUnderLoad, runs: dict[str, RolledBearing]) -> Values:
     """Lay out velocities in bands at all sensors; spectrum, envelope and lines in it at the first one."""
     rate = case.sampling_rate
     signals = [run.acceleration for run in runs.values()]
@@ -589,7 +589,7 @@ def _deciding(apart: Values) -> list[str]:
 # --- how it was computed
 
 
-def _numerics(case: BallBearingCase, wall: float) -> Iterator[tuple[str, str]]:
+def _numerics(case: BearingUnderLoad, wall: float) -> Iterator[tuple[str, str]]:
     """Numbers of the computation: names and values."""
     yield "time step", f"{rounded(case.step * 1e6, 4)} µs"
     yield "time steps per sample that is written", f"{case.steps_per_sample}"

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from asperity.case.ball_bearing import BallBearingCase
+from asperity.case.ball_bearing import BearingUnderLoad
 from asperity.errors import Finding, Grade, percent
 from asperity.laws import spec_of
 from asperity.rolling.bearing import RolledBearing
@@ -14,7 +14,7 @@ OFF = (0.1, 0.5)
 """Shares of the diameter of a ball by which a ring may be off its place: warned of, and out of range."""
 
 
-def bearing_findings(case: BallBearingCase, runs: dict[str, RolledBearing]) -> Iterator[Finding]:
+def bearing_findings(case: BearingUnderLoad, runs: dict[str, RolledBearing]) -> Iterator[Finding]:
     """Numbers of the runs that must be in range."""
     steps = (case.settling + case.duration) / case.step
     for name, run in runs.items():
@@ -32,7 +32,7 @@ def bearing_findings(case: BallBearingCase, runs: dict[str, RolledBearing]) -> I
     yield from _missed(runs)
 
 
-def out_of_place(case: BallBearingCase, law: str, run: RolledBearing) -> Iterator[Finding]:
+def out_of_place(case: BearingUnderLoad, law: str, run: RolledBearing) -> Iterator[Finding]:
     """Rings that are farther off than balls let them, and balls that do not carry the load in the mean."""
     of, angle = case.bearing.bearing, case.static.contact_angle
     moved = max(float(np.abs(each).max()) for each in (run.inner_motion, run.outer_motion))

@@ -30,7 +30,7 @@ from asperity.arguments import (
     shown,
 )
 from asperity.case import any_case
-from asperity.case.ball_bearing import BallBearingCase
+from asperity.case.ball_bearing import BearingUnderLoad
 from asperity.case.table_headings import heading_of
 from asperity.errors import InputError
 from asperity.results import save, variable
@@ -166,14 +166,14 @@ class SignalSet:
         """Take signals that are asked for; refuse cases without any, and a folder that cannot be written."""
         found = asked if isinstance(asked, cls) else cls(asked)  # type: ignore[arg-type]
         for case in (member.case for member in members if member.case):
-            if not isinstance(case, BallBearingCase):
+            if not isinstance(case, BearingUnderLoad):
                 raise InputError("signals", f"a {case.kind} case", 'a case of kind = "ball-bearing"')
         files.refuse_unwritable(found.labels_file.parent, "folder of the signals", "Choose another one.")
         return found
 
     def write(self, member: Member, table: xarray.Dataset) -> dict[str, Any]:
         """Write the signal of a member, where it is not there yet, and return its labels."""
-        assert isinstance(member.case, BallBearingCase)
+        assert isinstance(member.case, BearingUnderLoad)
         case, (heard, rate) = member.case, self._response or (np.zeros(0), 0.0)
         digest = content_key("signal", member.key, self.format, heard, rate, self._noise).partition("-")[2]
         file = self.labels_file.parent / f"{digest[:16]}.{self.format}"
@@ -192,7 +192,7 @@ class SignalSet:
             self._write(file, case, signal, labels)
         return labels
 
-    def _write(self, file: Path, case: BallBearingCase, signal: Array, labels: Mapping[str, Any]) -> None:
+    def _write(self, file: Path, case: BearingUnderLoad, signal: Array, labels: Mapping[str, Any]) -> None:
         """Write a signal (sensors, n), its case first."""
         if self.format == "nc":
             told = {name.partition(" [")[0]: value for name, value in labels.items() if name != "file"}
@@ -233,7 +233,7 @@ class SignalSet:
             write_csv(self.labels_file, names, told)
 
 
-def _labels(member: Member, case: BallBearingCase) -> dict[str, Any]:
+def _labels(member: Member, case: BearingUnderLoad) -> dict[str, Any]:
     """What is told of the signal of a member, in SI, units behind the names."""
     found: dict[str, Any] = {}
     for section, keys in (case.faults or {"fault": case.fault}).items():
@@ -263,7 +263,7 @@ def _absent(title: str) -> Any:
 
 def _titled(dotted: str) -> str:
     """Name of a key with its unit."""
-    unit = any_case.entry_of(BallBearingCase, dotted).unit if dotted != VARIANT else None
+    unit = any_case.entry_of(BearingUnderLoad, dotted).unit if dotted != VARIANT else None
     return f"{dotted} [{unit}]" if unit and unit != "1" else dotted
 
 

@@ -7,7 +7,7 @@ from xarray import DataTree
 
 from asperity.arguments import Array
 from asperity.case.any_case import AnyCase
-from asperity.case.ball_bearing import BallBearingCase
+from asperity.case.ball_bearing import BearingUnderLoad
 from asperity.case.table_headings import Column
 from asperity.case.tables import read_table
 from asperity.diagnostics import ISO_BANDS
@@ -24,13 +24,13 @@ _FREQUENCY = Column("frequency", "Hz")
 
 
 def _no_bearing(case: AnyCase) -> str:
-    return "" if isinstance(case, BallBearingCase) else f"no bearing: it is of kind {case.kind}"
+    return "" if isinstance(case, BearingUnderLoad) else f"no bearing: it is of kind {case.kind}"
 
 
 # --- tones: the ring that turns, and the cage and the parts it is met by
 
 
-def _tones(case: BallBearingCase) -> Array:
+def _tones(case: BearingUnderLoad) -> Array:
     """Tones of outer raceway, inner raceway, balls, and turns of the cage, Hz."""
     turning = case.kinematics
     return np.array([*(turning.tone(part) for part in PARTS), turning.cage])
@@ -39,7 +39,7 @@ def _tones(case: BallBearingCase) -> Array:
 def _tone(trial: TriedCase, measured: Measured) -> Values:
     """The tones nearest to those that were measured."""
     case = trial.case
-    assert isinstance(case, BallBearingCase)
+    assert isinstance(case, BearingUnderLoad)
     tones = _tones(case)
     apart = np.abs(np.log(measured.at[:, None] / tones))
     return np.asarray(tones[apart.argmin(axis=1)])
@@ -51,7 +51,7 @@ def _read_tones(path: Path) -> list[Measured]:
 
 
 def _of_angle(case: AnyCase) -> tuple[str, ...]:
-    assert isinstance(case, BallBearingCase)
+    assert isinstance(case, BearingUnderLoad)
     return ("axial",) if case.axial else ("speed",)
 
 
@@ -98,7 +98,7 @@ def _read_line(path: Path) -> list[Measured]:
 
 
 def _of_load(case: AnyCase) -> tuple[str, ...]:
-    assert isinstance(case, BallBearingCase)
+    assert isinstance(case, BearingUnderLoad)
     return tuple(name for name in ("radial", "axial") if getattr(case, name)) or ("radial",)
 
 
