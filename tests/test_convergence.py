@@ -333,3 +333,7 @@ class TestBearing:
             each.name: each for each in settings_of_bearing(prepare_case(case.with_(settling=0.0)), None)
         }
         assert still["run-in"].ways[0].words == "0 ms → 50 ms"
+        for lobes, words in ((19, "19 → 20"), (20, "the ring bends in 20 lobes, the most there are")):
+            softest = settings_of_bearing(prepare_case(case.with_(housing={"lobes": lobes})), None)
+            setting = next(each for each in softest if each.name == "lobes")
+            assert (setting.ways[0].words if setting.ways else setting.limit) == words

@@ -268,6 +268,14 @@ def test_what_cannot_be_used_is_named_and_everything_else_works(broken):
         parse_case('kind = "skates"')
 
 
+def test_of_two_packages_that_offer_one_name_one_is_left_out(beside):
+    installed(beside, {extensions.OBSERVERS: {"same": "math:pi"}}, "one-lab")
+    installed(beside, {extensions.OBSERVERS: {"same": "math:e"}}, "other-lab")
+    with pytest.warns(ExtensionWarning, match="a name that another package has; allowed: a name of its own"):
+        taken = extensions.taken(extensions.OBSERVERS, lambda name, number: number)
+    assert len(taken) == 1
+
+
 def test_an_observer_that_fails_does_not_lose_the_run(broken):
     case = ON_BEAM | {"kind": "ball-on-beam", "laws": ["linear"], "start": "0.45 m", "ball": {"load": "30 N"}}
     with pytest.warns(ExtensionWarning) as met:
