@@ -96,6 +96,8 @@ def test_it_is_the_superposition_of_360_bays(named, frequency):
 @pytest.mark.parametrize("track", [EULER, UIC60])
 def test_equal_bays_are_one(track):
     cell, frequency = in_bays(track, Bays.equal(5)), np.geomspace(40.0, 5e3, 20)
+    assert cell.regular == track
+    assert cell.bay_tracks == [track] * 5
     for rate in (decay_rate, decay_rate_en15461):
         assert rate(cell, frequency) == pytest.approx(rate(track, frequency), rel=1e-9)
     for x in (0.0, 0.2, 1.5, -0.1):

@@ -35,7 +35,8 @@ def find_level(b: Box, hardness: float) -> float:
 @compiled(**CALLED)
 def _between_bounds(b: Box) -> float:
     """Level between the residuals of those cells that are at the one and the other bound."""
-    capped, empty = -FAR, FAR
+    capped = -FAR
+    empty = FAR
     for i in range(b.nx):
         for q in range(i * b.pitch, i * b.pitch + b.ny):
             if b.pressure[q] > 0.0:
@@ -50,14 +51,17 @@ def mark_free(b: Box, hardness: float, level: float) -> None:
     """Mask ones with the free set: cells that no bound holds at a level, m, beyond the overlap's approach."""
     target = b.masked[REACH * b.pitch :]
     for q in range(len(b.pressure)):
-        p, r = b.pressure[q], b.residual[q] - level
+        p = b.pressure[q]
+        r = b.residual[q] - level
         target[q] = 1.0 if (p > 0.0 or r < 0.0) and (p < hardness or r > 0.0) else 0.0
 
 
 @compiled(**INNER, **REASSOCIATE)
 def balance_load(b: Box, share: float, level: float) -> tuple[float, float]:
     """Take a share of `unit`, m, off z; return product and change as `projected_cg.precondition` does."""
-    rho, change, free = 0.0, 0.0, b.masked[REACH * b.pitch :]
+    rho = 0.0
+    change = 0.0
+    free = b.masked[REACH * b.pitch :]
     for q in range(len(b.z)):
         z = b.z[q] - share * b.unit[q]
         g = (b.residual[q] - level) * free[q]
@@ -76,7 +80,10 @@ def _shift(
     Returns the sum of the pressure after it, how that grows with the shift, its work against the residual,
     and how many cells the bounds held back.
     """
-    total, growth, work, clipped = 0.0, 0.0, 0.0, 0.0
+    total = 0.0
+    growth = 0.0
+    work = 0.0
+    clipped = 0.0
     for q in range(len(b.z)):
         p, unit = b.pressure[q], b.unit[q]
         wanted = p + length * b.direction[q] + shift * unit
@@ -110,7 +117,10 @@ def project_at_load(
     work of the step against the residual (zero if there is no such shift), the cells that the bounds held
     back, and whether there is such a shift.
     """
-    low, high, shift, reach = -np.inf, np.inf, 0.0, 0.0
+    low = -np.inf
+    high = np.inf
+    shift = 0.0
+    reach = 0.0
     for _ in range(SHIFTS):
         reached, growth, work, clipped = _shift(b, length, shift, level, hardness)
         missing = total - reached
@@ -140,7 +150,8 @@ def carry(b: Box, hardness: float, total: float, stiffness: float) -> None:
         b.pressure[q] = 0.0
     if not project_at_load(b, 1.0, 0.0, hardness, total)[2]:
         for q in range(len(b.pressure)):
-            b.direction[q], b.unit[q] = stiffness * b.overlap[q], stiffness
+            b.direction[q] = stiffness * b.overlap[q]
+            b.unit[q] = stiffness
         project_at_load(b, 1.0, 0.0, hardness, total)
     margin = rounding(hardness, total)
     for q in range(len(b.pressure)):

@@ -28,7 +28,8 @@ def padded_spectrum(table: NDArray, nx: int, ny: int) -> NDArray:
     The kernel (≥ nx, ≥ ny) is given at non-negative separations. Lengths mx ≥ 2 nx − 1 and my ≥ 2 ny − 1 are
     even and transform fast: a circular convolution on them does not wrap.
     """
-    mx, my = smooth_length(2 * nx - 1), smooth_length(2 * ny - 1)
+    mx = smooth_length(2 * nx - 1)
+    my = smooth_length(2 * ny - 1)
     circulant = np.zeros((mx, my))
     circulant[:nx, :ny] = table[:nx, :ny]
     circulant[mx - nx + 1 :, :ny] = table[nx - 1 : 0 : -1, :ny]
@@ -60,15 +61,18 @@ def unit_indentation(
     pressure (nx, ny) in Pa per m of indentation, whose integral is the tangent stiffness, and whether the
     residual, relative to one, fell below `rtol`.
     """
-    spectrum, rho = padded_spectrum(table, *inside.shape), 1.0
-    pressure, direction = np.zeros(inside.shape), np.zeros(inside.shape)
+    spectrum = padded_spectrum(table, *inside.shape)
+    rho = 1.0
+    pressure = np.zeros(inside.shape)
+    direction = np.zeros(inside.shape)
     residual = -inside.astype(np.float64)
     weight = inside.astype(np.float64) if soft is None else inside / np.sqrt(1.0 + soft * taps[0])
     for _ in range(max_iterations):
         if np.abs(residual).max() <= rtol:  # never of NaN
             return pressure, True
         z = apply_stencil((residual * weight)[None], taps, np)[0] * weight
-        before, rho = rho, float(np.vdot(residual, z))
+        before = rho
+        rho = float(np.vdot(residual, z))
         direction = rho / before * direction - z
         response = convolve_padded(direction[None], spectrum, np)[0]
         if soft is not None:
@@ -142,16 +146,19 @@ def solve_batch(
     left out.
     """
     count = len(overlap)
-    iterations, worst = xp.zeros(count, dtype=np.int64), xp.ones(count) * np.inf
+    iterations = xp.zeros(count, dtype=np.int64)
+    worst = xp.ones(count) * np.inf
     while True:
         residual = convolve_padded(pressure, task.spectrum, xp) - overlap
         if softness is not None:
             residual += sunk(softness, drop, flow, task.yielding, pressure, xp)
-        before, worst = worst, _complementarity(pressure, residual, task.hardness, xp)
+        before = worst
+        worst = _complementarity(pressure, residual, task.hardness, xp)
         active = (worst > tolerance) & (worst <= STUCK * before) & (iterations < task.max_iterations)
         if not bool(active.any()):
             return iterations, worst
-        nothing, none = xp.zeros_like(residual), xp.zeros(count)
+        nothing = xp.zeros_like(residual)
+        none = xp.zeros(count)
         members = _Members(
             xp.arange(count), tolerance, pressure, residual, nothing, nothing, none, none + 1.0, iterations,
             active, softness, drop, flow,
@@ -179,7 +186,8 @@ def _record(members: _Members, pressure: Array, iterations: Array) -> None:
 
 def _iterate(m: _Members, task: BatchTask, xp: Any) -> _Members:
     """One iteration of every active member."""
-    hardness, count = task.hardness, m.iterations + m.active
+    hardness = task.hardness
+    count = m.iterations + m.active
 
     def project(direction: Array, length: Array) -> tuple[Array, Array, Array]:
         """Step of a length along a direction, within the bounds; its work; whether they held it back."""
@@ -195,7 +203,8 @@ def _iterate(m: _Members, task: BatchTask, xp: Any) -> _Members:
         giving = m.softness + task.yielding * (m.pressure > m.flow)
         free = free / xp.sqrt(1.0 + task.taps[0] * giving * (before < m.drop))
     z = apply_stencil(m.residual * free, task.taps, xp) * free
-    rho, known = _dot(m.residual, z), m.rho > 0.0
+    rho = _dot(m.residual, z)
+    known = m.rho > 0.0
     beta = xp.maximum((rho - _dot(m.previous, z)) / xp.where(known, m.rho, 1.0), 0.0) * known
     direction = (_each(beta) * m.direction - z) * (z != 0.0)
     step, work, clipped = project(direction, m.length)

@@ -58,7 +58,8 @@ def box_room(nx: int, ny: int, mx: int, my: int, lanes: int) -> int:
 def empty_box(nx: int, ny: int, room: NDArray) -> Box:
     """Make a box without overlap and pressure, whose fields lie in `room`, as long as `box_room` says."""
     pitch, size = _extent(nx, ny, lanes(room))
-    masked, end = 9 * size, 10 * size + 2 * REACH * pitch
+    masked = 9 * size
+    end = 10 * size + 2 * REACH * pitch
     box = Box(
         nx, ny, pitch, room[:size], room[size : 2 * size], room[2 * size : 3 * size],
         room[3 * size : 4 * size], room[4 * size : 5 * size], room[5 * size : 6 * size],
@@ -66,7 +67,8 @@ def empty_box(nx: int, ny: int, room: NDArray) -> Box:
         room[end:],
     )  # fmt: skip
     for q in range(size):
-        box.overlap[q], box.residual[q] = -FAR, FAR
+        box.overlap[q] = -FAR
+        box.residual[q] = FAR
     for q in range(size):
         box.pressure[q] = box.direction[q] = box.response[q] = 0.0
     for q in range(2 * REACH * pitch):  # what is behind the residual and before it
@@ -78,7 +80,8 @@ def empty_box(nx: int, ny: int, room: NDArray) -> Box:
 def cut(outer: Box, row: int, column: int, b: Box) -> None:
     """Copy overlap, pressure and residual of a part of a box, from a row and a column on, to an empty box."""
     for i in range(b.nx):
-        here, there = i * b.pitch, (row + i) * outer.pitch + column
+        here = i * b.pitch
+        there = (row + i) * outer.pitch + column
         for j in range(b.ny):
             b.overlap[here + j] = outer.overlap[there + j]
             b.pressure[here + j] = outer.pressure[there + j]
@@ -108,7 +111,9 @@ def overlap_box(gap: NDArray, approach: float, lowest: NDArray) -> tuple[float, 
     nx, ny = gap.shape
     for j in range(ny):
         lowest[j] = np.inf
-    smallest, first, end = np.inf, nx, 0
+    smallest = np.inf
+    first = nx
+    end = 0
     for i in range(nx):
         row = np.inf
         for j in range(ny):
@@ -117,10 +122,12 @@ def overlap_box(gap: NDArray, approach: float, lowest: NDArray) -> tuple[float, 
             lowest[j] = min(lowest[j], g)
         smallest = min(smallest, row)
         if row < approach:
-            first, end = min(first, i), i + 1
+            first = min(first, i)
+            end = i + 1
     if end == 0:
         return approach - smallest, 0, 0, 0, 0
-    left, right = 0, ny
+    left = 0
+    right = ny
     while lowest[left] >= approach:
         left += 1
     while lowest[right - 1] >= approach:
@@ -142,7 +149,8 @@ def foundation_approach(
     approach = added / count + load / (stiffness * np.sqrt(count))
     for _ in range(30):  # the mean over all cells first, then over fewer and fewer
         count, added, _lowest = _below(gap, approach)
-        last, approach = approach, added / count + load / (stiffness * np.sqrt(count))
+        last = approach
+        approach = added / count + load / (stiffness * np.sqrt(count))
         if abs(approach - last) <= 1e-3 * (approach - lowest):  # an estimate is enough
             break
     # where all cells are near the hardness, so many must overlap that they carry a little more than the load
@@ -155,7 +163,9 @@ def foundation_approach(
 @compiled(**LOOP, **REASSOCIATE)
 def _below(gap: NDArray, approach: float) -> tuple[float, float, float]:
     """Number and sum of the gaps below an approach, and the lowest."""
-    count, added, lowest = 0.0, 0.0, np.inf
+    count = 0.0
+    added = 0.0
+    lowest = np.inf
     for i in range(gap.shape[0]):
         for j in range(gap.shape[1]):
             g = gap[i, j]

@@ -18,7 +18,8 @@ def spline_coefficients(values, first, end, coefficients, factor):  # type: igno
     One lies beyond each end: they fill (places + 2, s) of `coefficients`; `factor` is room. With
     c[i−1] + 4 c[i] + c[i+1] = 6 f[i], and c = f at both ends, where the curvature is zero.
     """
-    m, s = end - first, values.shape[0]
+    m = end - first
+    s = values.shape[0]
     factor[0] = 0.0
     for j in range(s):
         coefficients[1, j] = values[j, first]
@@ -46,16 +47,21 @@ def splines_along(values, index):  # type: ignore[no-untyped-def]
     """
     s, m = values.shape
     result = np.empty((index.shape[0], s))
-    first, end, origin = 0, 0, 0
+    first = 0
+    end = 0
+    origin = 0
     most = min(m, BLOCK + 1 + 2 * OVERLAP)
-    coefficients, factor = np.empty((most + 2, s)), np.empty(most)
+    coefficients = np.empty((most + 2, s))
+    factor = np.empty(most)
     for k in range(index.shape[0]):
         i = min(int(index[k]), m - 2)
         if not first <= i < end:
             if i >= first:
-                first, end = i, min(i + BLOCK, m - 1)
+                first = i
+                end = min(i + BLOCK, m - 1)
             else:
-                first, end = max(0, i + 1 - BLOCK), i + 1
+                first = max(0, i + 1 - BLOCK)
+                end = i + 1
             origin = max(0, first - OVERLAP)
             spline_coefficients(values, origin, min(m, end + 1 + OVERLAP), coefficients, factor)
         t = index[k] - i
@@ -169,13 +175,16 @@ def shape_preserving(knots: NDArray, values: NDArray, places: NDArray) -> NDArra
     ends: there the three-point formula has to agree with the end secant in sign, and is held within thrice it
     where the rows turn (C. Moler, Numerical Computing with MATLAB (2004), Sec. 3.6).
     """
-    width, secant = np.diff(knots), np.diff(values, axis=-1) / np.diff(knots)
+    width = np.diff(knots)
+    secant = np.diff(values, axis=-1) / np.diff(knots)
     first = _turning_end_slope(width[0], width[1], secant[..., 0], secant[..., 1])
     last = _turning_end_slope(width[-1], width[-2], secant[..., -1], secant[..., -2])
     slopes = np.concatenate([first[..., None], _inner_slopes(width, secant), last[..., None]], axis=-1)
     piece = np.clip(np.searchsorted(knots, places, side="right") - 1, 0, len(knots) - 2)
-    s, h = places - knots[piece], width[piece]
-    start, end = slopes[..., piece] - secant[..., piece], slopes[..., piece + 1] - secant[..., piece]
+    s = places - knots[piece]
+    h = width[piece]
+    start = slopes[..., piece] - secant[..., piece]
+    end = slopes[..., piece + 1] - secant[..., piece]
     rest = start - (2.0 * start + end) * (s / h) + (start + end) * (s / h) ** 2
     return np.asarray(values[..., piece] + s * (secant[..., piece] + rest))
 
@@ -189,11 +198,14 @@ def continued_to_touch(knots: NDArray, root: NDArray) -> NDArray:
     """
     rows = np.arange(len(root))
     first = np.argmax(root > 0.0, axis=1)
-    before, after, second = first - 1, first + 1, first + 2
+    before = first - 1
+    after = first + 1
+    second = first + 2
     last = len(knots) - 1
 
     def secant(low: NDArray, high: NDArray) -> NDArray:
-        low, high = np.clip(low, 0, last), np.clip(high, 0, last)
+        low = np.clip(low, 0, last)
+        high = np.clip(high, 0, last)
         width = np.where(high > low, knots[high] - knots[low], 1.0)
         return (root[rows, high] - root[rows, low]) / width
 
@@ -208,10 +220,13 @@ def continued_to_touch(knots: NDArray, root: NDArray) -> NDArray:
 
 
 def _inner_slopes(width: NDArray, secant: NDArray) -> NDArray:
-    left, right = secant[..., :-1], secant[..., 1:]
-    weight_left, weight_right = width[:-1] + 2.0 * width[1:], 2.0 * width[:-1] + width[1:]
+    left = secant[..., :-1]
+    right = secant[..., 1:]
+    weight_left = width[:-1] + 2.0 * width[1:]
+    weight_right = 2.0 * width[:-1] + width[1:]
     goes_on = np.sign(left) * np.sign(right) > 0.0
-    safe_left, safe_right = np.where(goes_on, left, 1.0), np.where(goes_on, right, 1.0)
+    safe_left = np.where(goes_on, left, 1.0)
+    safe_right = np.where(goes_on, right, 1.0)
     mean = (weight_left + weight_right) / (weight_left / safe_left + weight_right / safe_right)
     return np.where(goes_on, mean, 0.0)
 
@@ -226,7 +241,8 @@ def cubic_coefficients(knots: NDArray, values: NDArray, slopes: NDArray) -> NDAr
     width = np.diff(knots)
     secant = np.diff(values) / width
     # what a straight line leaves; exactly zero when values and slopes lie on one
-    start, end = slopes[:-1] - secant, slopes[1:] - secant
+    start = slopes[:-1] - secant
+    end = slopes[1:] - secant
     cubic = (start + end) / width**2
     square = -(2.0 * start + end) / width
     return np.stack([cubic, square, slopes[:-1], values[:-1]], axis=1)

@@ -57,17 +57,21 @@ def write_parts(target: NDArray, index: int, re: Any, im: Any) -> None:
 
 @compiled(**INNER)
 def _put(target: NDArray, index: int, re: Any, im: Any, w: NDArray, power: int) -> None:
-    c, s = w[2 * power], w[2 * power + 1]
+    c = w[2 * power]
+    s = w[2 * power + 1]
     write_parts(target, index, c * re - s * im, c * im + s * re)
 
 
 @compiled(**INNER)
 def _by_two(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
-    m, unit, row = n // 2, len(w) // (2 * n), 2 * lanes(x)
+    m = n // 2
+    unit = len(w) // (2 * n)
+    row = 2 * lanes(x)
     hop = stride * m * row
     for p in range(m):
         for q in range(stride):
-            i, o = (q + stride * p) * row, (q + stride * 2 * p) * row
+            i = (q + stride * p) * row
+            o = (q + stride * 2 * p) * row
             a, ai = read_parts(x, i)
             b, bi = read_parts(x, i + hop)
             write_parts(y, o, a + b, ai + bi)
@@ -76,12 +80,16 @@ def _by_two(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
 
 @compiled(**INNER)
 def _by_three(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
-    m, unit, row = n // 3, len(w) // (2 * n), 2 * lanes(x)
+    m = n // 3
+    unit = len(w) // (2 * n)
+    row = 2 * lanes(x)
     hop = stride * m * row
-    half, sine = 0.5, 0.75**0.5
+    half = 0.5
+    sine = 0.75**0.5
     for p in range(m):
         for q in range(stride):
-            i, o = (q + stride * p) * row, (q + stride * 3 * p) * row
+            i = (q + stride * p) * row
+            o = (q + stride * 3 * p) * row
             a, ai = read_parts(x, i)
             b, bi = read_parts(x, i + hop)
             c, ci = read_parts(x, i + 2 * hop)
@@ -95,17 +103,26 @@ def _by_three(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
 
 @compiled(**INNER)
 def _by_four(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
-    m, unit, row = n // 4, len(w) // (2 * n), 2 * lanes(x)
+    m = n // 4
+    unit = len(w) // (2 * n)
+    row = 2 * lanes(x)
     hop = stride * m * row
     for p in range(m):
         for q in range(stride):
-            i, o = (q + stride * p) * row, (q + stride * 4 * p) * row
+            i = (q + stride * p) * row
+            o = (q + stride * 4 * p) * row
             a, ai = read_parts(x, i)
             b, bi = read_parts(x, i + hop)
             c, ci = read_parts(x, i + 2 * hop)
             d, di = read_parts(x, i + 3 * hop)
-            s, si, t, ti = a + c, ai + ci, a - c, ai - ci
-            u, ui, v, vi = b + d, bi + di, bi - di, d - b
+            s = a + c
+            si = ai + ci
+            t = a - c
+            ti = ai - ci
+            u = b + d
+            ui = bi + di
+            v = bi - di
+            vi = d - b
             write_parts(y, o, s + u, si + ui)
             _put(y, o + stride * row, t + v, ti + vi, w, p * unit)
             _put(y, o + 2 * stride * row, s - u, si - ui, w, 2 * p * unit)
@@ -114,20 +131,31 @@ def _by_four(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
 
 @compiled(**INNER)
 def _by_five(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
-    m, unit, row = n // 5, len(w) // (2 * n), 2 * lanes(x)
+    m = n // 5
+    unit = len(w) // (2 * n)
+    row = 2 * lanes(x)
     hop = stride * m * row
-    c1, c2 = np.cos(0.4 * np.pi), np.cos(0.8 * np.pi)
-    s1, s2 = np.sin(0.4 * np.pi), np.sin(0.8 * np.pi)
+    c1 = np.cos(0.4 * np.pi)
+    c2 = np.cos(0.8 * np.pi)
+    s1 = np.sin(0.4 * np.pi)
+    s2 = np.sin(0.8 * np.pi)
     for p in range(m):
         for q in range(stride):
-            i, o = (q + stride * p) * row, (q + stride * 5 * p) * row
+            i = (q + stride * p) * row
+            o = (q + stride * 5 * p) * row
             a, ai = read_parts(x, i)
             b, bi = read_parts(x, i + hop)
             c, ci = read_parts(x, i + 2 * hop)
             d, di = read_parts(x, i + 3 * hop)
             e, ei = read_parts(x, i + 4 * hop)
-            t, ti, u, ui = b + e, bi + ei, c + d, ci + di
-            v, vi, z, zi = bi - ei, e - b, ci - di, d - c
+            t = b + e
+            ti = bi + ei
+            u = c + d
+            ui = ci + di
+            v = bi - ei
+            vi = e - b
+            z = ci - di
+            zi = d - c
             write_parts(y, o, a + t + u, ai + ti + ui)
             f, fi = a + c1 * t + c2 * u, ai + c1 * ti + c2 * ui
             g, gi = s1 * v + s2 * z, s1 * vi + s2 * zi
@@ -145,7 +173,9 @@ def transform(x: NDArray, y: NDArray, radices: NDArray, w: NDArray) -> bool:
 
     If not, it is in `x`; both, (2 n lanes,), are overwritten. Radices are from `factors`, `w` from `roots`.
     """
-    n, stride, swapped = len(w) // 2, np.int64(1), False  # a literal one would be compiled apart
+    n = len(w) // 2
+    stride = np.int64(1)
+    swapped = False  # a literal one would be compiled apart
     for radix in radices:
         source, target = (y, x) if swapped else (x, y)
         if radix == 4:
@@ -156,5 +186,7 @@ def transform(x: NDArray, y: NDArray, radices: NDArray, w: NDArray) -> bool:
             _by_three(source, target, n, stride, w)
         else:
             _by_five(source, target, n, stride, w)
-        n, stride, swapped = n // radix, stride * radix, not swapped
+        n = n // radix
+        stride = stride * radix
+        swapped = not swapped
     return swapped

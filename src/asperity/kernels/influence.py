@@ -19,8 +19,10 @@ AT_ONCE = 2**16
 
 def _edge_log(x: NDArray, y: NDArray, half: float) -> NDArray:
     """ln[(y₊ + √(y₊² + x²)) / (y₋ + √(y₋² + x²))] for y ≥ 0, without cancellation far away."""
-    upper, lower = y + half, y - half
-    r_upper, r_lower = np.hypot(upper, x), np.hypot(lower, x)
+    upper = y + half
+    lower = y - half
+    r_upper = np.hypot(upper, x)
+    r_lower = np.hypot(lower, x)
     away = np.where(lower < 0.0, r_lower - lower, 1.0)
     denominator = np.where(lower < 0.0, x * x / away, lower + r_lower)
     step = 2.0 * half * (1.0 + 2.0 * y / (r_upper + r_lower))
@@ -33,7 +35,8 @@ def cell_displacement(x: NDArray, y: NDArray, dx: float, dy: float) -> NDArray:
     All in m; to be divided by π E*, Pa. A. E. H. Love, Phil. Trans. R. Soc. A 228 (1929) 377; finite
     everywhere.
     """
-    x, y = np.abs(x), np.abs(y)
+    x = np.abs(x)
+    y = np.abs(y)
     hx, hy = 0.5 * dx, 0.5 * dy
     return (
         (x + hx) * _edge_log(x + hx, y, hy)
@@ -45,8 +48,10 @@ def cell_displacement(x: NDArray, y: NDArray, dx: float, dy: float) -> NDArray:
 
 def influence_table(nx: int, ny: int, dx: float, dy: float) -> NDArray:
     """Influence coefficients (nx, ny), m, times π E*: entry (i, j) for the separation (i dx, j dy), m."""
-    x, y = dx * np.arange(nx, dtype=np.float64), dy * np.arange(ny, dtype=np.float64)
-    table, rows = np.empty((nx, ny)), max(1, AT_ONCE // ny)
+    x = dx * np.arange(nx, dtype=np.float64)
+    y = dy * np.arange(ny, dtype=np.float64)
+    table = np.empty((nx, ny))
+    rows = max(1, AT_ONCE // ny)
     for first in range(0, nx, rows):
         table[first : first + rows] = cell_displacement(x[first : first + rows, None], y, dx, dy)
     return table
@@ -66,7 +71,8 @@ def means_table(nx: int, ny: int, dx: float, dy: float) -> NDArray:
     table = influence_table(nx + 1, ny + 1, dx, dy)
     whole = np.pad(table, ((1, 0), (1, 0)), mode="reflect")  # even in both separations
     middle = whole[1:-1, 1:-1]
-    along, across = (whole[2:, 1:-1] + whole[:-2, 1:-1], whole[1:-1, 2:] + whole[1:-1, :-2])
+    along = whole[2:, 1:-1] + whole[:-2, 1:-1]
+    across = whole[1:-1, 2:] + whole[1:-1, :-2]
     means = middle - (along + across - 4.0 * middle) / 24.0
     means[0, 0] -= 2.0 * np.pi * ALIAS * (dx + dy)
     means[1, 0] += np.pi * ALIAS * dx
@@ -126,7 +132,8 @@ def whole_vectors(n: int, lanes: int) -> int:
 @compiled(**INNER)
 def workspace(mx: int, my: int, lanes: int) -> int:
     """Room, in numbers, that a convolution needs whose largest box has mx × my cells."""
-    x, y = whole_vectors(mx, lanes), whole_vectors(my, lanes)
+    x = whole_vectors(mx, lanes)
+    y = whole_vectors(my, lanes)
     return 2 * x * y + 6 * max(x, y) * lanes
 
 
@@ -163,7 +170,8 @@ def _turned(source: NDArray, index: int, cosine: Any, sine: Any) -> Any:
 @compiled(**INNER)
 def _across(c: Convolution, block: int, rows: NDArray, ny: int, a: NDArray, b: NDArray, s: NDArray) -> None:
     """Convolve across in both senses of turning; the conjugate of the sum replaces the rows."""
-    my, part = len(c.turn_y) // 2, lanes(rows)
+    my = len(c.turn_y) // 2
+    part = lanes(rows)
     for sense in range(2):
         sign = 1.0 - 2.0 * sense
         for j in range(ny):
@@ -198,11 +206,16 @@ def convolve(
     Field and result lie flat (nx pitch,), row after row, the field zero in the columns from `ny` on, where
     the result has no meaning; a row is at least ``whole_vectors(ny)`` long, `work` as `workspace` says.
     """
-    mx, n = len(c.turn_x) // 2, lanes(work)
-    row, blocks = whole_vectors(ny, n), -(-mx // n)
+    mx = len(c.turn_x) // 2
+    n = lanes(work)
+    row = whole_vectors(ny, n)
+    blocks = -(-mx // n)
     size = 2 * max(blocks * n, whole_vectors(len(c.turn_y) // 2, n)) * n
-    a, b, s = work[:size], work[size : 2 * size], work[2 * size : 3 * size]
-    rows, line = work[3 * size :], 2 * row * n
+    a = work[:size]
+    b = work[size : 2 * size]
+    s = work[2 * size : 3 * size]
+    rows = work[3 * size :]
+    line = 2 * row * n
     for first in range(0, row, n):
         _turn_in(c, field, pitch, first, nx, a)
         x = b if transform(a, b, c.radices_x, c.roots_x) else a
@@ -292,7 +305,9 @@ def is_prepared(known: Influence, nx: int, ny: int) -> bool:
 def convolution(known: Influence, nx: int, ny: int) -> Convolution:
     """Convolution on a box of nx × ny cells, which is prepared."""
     i, j = known.lengths[-(-nx // UNIT)] // UNIT, known.lengths[-(-ny // UNIT)] // UNIT
-    x, y, place = known.starts[i], known.starts[j], known.places[i, j]
+    x = known.starts[i]
+    y = known.starts[j]
+    place = known.places[i, j]
     end_x, end_y = RADICES * i, RADICES * j
     while known.radices[end_x]:
         end_x += 1

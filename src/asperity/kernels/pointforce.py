@@ -42,7 +42,10 @@ def curve_force(knots, coefficients, exponent, bilateral, s):  # type: ignore[no
     i = interval(knots, s)
     u = s - knots[i]
     within = min(max(u, 0.0), knots[i + 1] - knots[i])
-    c3, c2, c1, c0 = coefficients[i, 0], coefficients[i, 1], coefficients[i, 2], coefficients[i, 3]
+    c3 = coefficients[i, 0]
+    c2 = coefficients[i, 1]
+    c1 = coefficients[i, 2]
+    c0 = coefficients[i, 3]
     slope = (3.0 * c3 * within + 2.0 * c2) * within + c1
     g = ((c3 * within + c2) * within + c1) * within + c0 + slope * (u - within)
     return power(g, slope, exponent)
@@ -62,7 +65,8 @@ def power(g, slope, exponent):  # type: ignore[no-untyped-def]
 @compiled(**INNER)
 def interval(points, x):  # type: ignore[no-untyped-def]
     """Index i with points[i] < x <= points[i + 1], for x above the first and not above the last."""
-    low, high = 0, points.shape[0] - 1
+    low = 0
+    high = points.shape[0] - 1
     while high - low > 1:
         middle = (low + high) // 2
         if points[middle] < x:
@@ -94,11 +98,14 @@ def table_root(states, values, slopes, step, touch, approach):  # type: ignore[n
     if not approach < states[last]:
         return values[step, last] + slopes[step, last] * (approach - states[last]), slopes[step, last]
     i = interval(states, approach)
-    low, value = states[i], values[step, i]
+    low = states[i]
+    value = values[step, i]
     if touch > low:
-        low, value = touch, 0.0
+        low = touch
+        value = 0.0
     elif approach < low:  # between a touch below all states and the first of them
-        low, value = touch, 0.0
+        low = touch
+        value = 0.0
         i = -1
     width = states[i + 1] - low
     t = (approach - low) / width
@@ -157,7 +164,9 @@ def evaluate_all(law, approach, first):  # type: ignore[no-untyped-def]
 
     And the number of positions at which the law is continued beyond its data.
     """
-    force, slope, beyond = np.empty(approach.size), np.empty(approach.size), 0
+    force = np.empty(approach.size)
+    slope = np.empty(approach.size)
+    beyond = 0
     for i in range(approach.size):
         step = first + i
         force[i], slope[i] = evaluate(law, step, approach[i])

@@ -44,12 +44,16 @@ def advance_poles(decay, residue, state, cell, share, force):  # type: ignore[no
     That is the displacement at the end without the force there. The force acts in a cell of the period, with
     a share of it behind.
     """
-    low, high = force * (1.0 - share), force * share
+    low = force * (1.0 - share)
+    high = force * share
     poles = state.shape[0] // 2
     total = 0.0
     for p in range(poles):
         q = poles + p
-        a, b, c, d = state[p], state[q], decay[p], decay[q]
+        a = state[p]
+        b = state[q]
+        c = decay[p]
+        d = decay[q]
         real = c * a - d * b + low * residue[cell, p] + high * residue[cell + 1, p]
         state[q] = c * b + d * a + low * residue[cell, q] + high * residue[cell + 1, q]
         state[p] = real
@@ -65,10 +69,14 @@ def scatter(kernel, ring, cell, t, now, force):  # type: ignore[no-untyped-def]
     −1, 0, 1, 2 at a place t between 0 and 1.
     """
     rows, taps = kernel.shape
-    before, after = kernel[(cell + rows - 1) % rows], kernel[(cell + 1) % rows]
-    here, beyond = kernel[cell], kernel[(cell + 2) % rows]
-    w0, w1 = -t * (t - 1.0) * (t - 2.0) / 6.0 * force, (t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0 * force
-    w2, w3 = -(t + 1.0) * t * (t - 2.0) / 2.0 * force, (t + 1.0) * t * (t - 1.0) / 6.0 * force
+    before = kernel[(cell + rows - 1) % rows]
+    after = kernel[(cell + 1) % rows]
+    here = kernel[cell]
+    beyond = kernel[(cell + 2) % rows]
+    w0 = -t * (t - 1.0) * (t - 2.0) / 6.0 * force
+    w1 = (t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0 * force
+    w2 = -(t + 1.0) * t * (t - 2.0) / 2.0 * force
+    w3 = (t + 1.0) * t * (t - 1.0) / 6.0 * force
     for k in range(1, taps - now):
         ring[now + k] += w0 * before[k] + w1 * here[k] + w2 * after[k] + w3 * beyond[k]
     for k in range(max(taps - now, 1), taps):
@@ -86,7 +94,9 @@ def advance_channels(channels, motion, force, step):  # type: ignore[no-untyped-
     for k in range(motion.rail_ahead.shape[0]):
         motion.rail_ahead[k] = 0.0
     for p in range(channels.source.shape[0]):
-        source, receiver, t = channels.source[p], channels.receiver[p], channels.table[p]
+        source = channels.source[p]
+        receiver = channels.receiver[p]
+        t = channels.table[p]
         now, kernel = channels.now[t], channels.scattered[t]
         if channels.scatters[t]:
             cell, share = place(channels, source, step - 1, kernel.shape[0])

@@ -100,7 +100,9 @@ def cubics(values: NDArray) -> NDArray:
     target[:, 0] = 3.0 * (values[:, 1] - values[:, 0])
     target[:, 1:-1] = 3.0 * (values[:, 2:] - values[:, :-2])
     slopes = np.linalg.solve(matrix, target.T).T
-    low, high, step = slopes[:, :-1], slopes[:, 1:], np.diff(values)
+    low = slopes[:, :-1]
+    high = slopes[:, 1:]
+    step = np.diff(values)
     return np.stack([values[:, :-1], low, 3.0 * step - 2.0 * low - high, low + high - 2.0 * step], axis=2)
 
 
@@ -110,18 +112,26 @@ _LEFT, _COVERED = cubics(LEFT).ravel(), cubics(COVERED).ravel()
 @compiled(**INNER, **UNCHECKED)
 def between_curves(curves: NDArray, ratio: float, slant: float) -> tuple[float, float, float]:
     """Find a value of curves, and its derivatives by the ratio √(p/S), from 0 to END, and by the slant."""
-    place, turn = ratio * PER_UNIT, np.sqrt(slant) * (SLANTS - 1)
+    place = ratio * PER_UNIT
+    turn = np.sqrt(slant) * (SLANTS - 1)
     k = min(np.int32(place), np.int32(KNOTS - 2))  # whole numbers that fit beside each other into a vector
     j = min(np.int32(turn), np.int32(SLANTS - 2))
-    t, lower = place - k, float(j)
+    t = place - k
+    lower = float(j)
     per_slant = (SLANTS - 1) ** 2 / (2.0 * lower + 1.0)
     share = slant * per_slant - lower * lower / (2.0 * lower + 1.0)
     i = 4 * (j * np.int32(KNOTS - 1) + k)
     o = i + np.int32(4 * (KNOTS - 1))
-    a, b, c, d = curves[i], curves[i + 1], curves[i + 2], curves[i + 3]
+    a = curves[i]
+    b = curves[i + 1]
+    c = curves[i + 2]
+    d = curves[i + 3]
     one = a + t * (b + t * (c + t * d))
     slope = b + t * (2.0 * c + t * 3.0 * d)
-    a, b, c, d = curves[o], curves[o + 1], curves[o + 2], curves[o + 3]
+    a = curves[o]
+    b = curves[o + 1]
+    c = curves[o + 2]
+    d = curves[o + 3]
     turned = a + t * (b + t * (c + t * d)) - one
     steeper = b + t * (2.0 * c + t * 3.0 * d) - slope
     return one + share * turned, (slope + share * steeper) * PER_UNIT, turned * per_slant
@@ -185,7 +195,8 @@ def cells_beside(rims: Rims | None) -> int:
 @compiled(**INNER)
 def _place(b: Box, rims: Rims, k: int, i: int, j: int) -> None:
     """Place a cell of the list in a row and a column of a box."""
-    q, idle = i * b.pitch + j, i * b.pitch + b.ny  # no pressure acts there
+    q = i * b.pitch + j
+    idle = i * b.pitch + b.ny  # no pressure acts there
     rims.row[k], rims.cell[k] = i, q
     rims.above[k] = q - b.pitch if i > 0 else idle
     rims.below[k] = q + b.pitch if i + 1 < b.nx else idle
@@ -197,16 +208,22 @@ def _find_rims(b: Box, rims: Rims, level: float) -> int:
 
     Not those without pressure that stay apart by more than a rim leaves in any cell.
     """
-    found, p, side = 0, b.pressure, max(rims.along, rims.across)
+    found = 0
+    p = b.pressure
+    side = max(rims.along, rims.across)
     for i in range(b.nx):
         first = i * b.pitch
-        above, below = first - b.pitch if i > 0 else first, first + b.pitch if i + 1 < b.nx else first
-        before, after = 1.0 if i > 0 else 0.0, 1.0 if i + 1 < b.nx else 0.0
+        above = first - b.pitch if i > 0 else first
+        below = first + b.pitch if i + 1 < b.nx else first
+        before = 1.0 if i > 0 else 0.0
+        after = 1.0 if i + 1 < b.nx else 0.0
         for j in range(b.ny):
             q = first + j
-            x, y = after * p[below + j] - before * p[above + j], p[q + 1] - p[q - 1]
+            x = after * p[below + j] - before * p[above + j]
+            y = p[q + 1] - p[q - 1]
             if p[q] * p[q] < END**4 * (x * x + y * y):
-                far, near = max(abs(x), abs(y)), min(abs(x), abs(y))
+                far = max(abs(x), abs(y))
+                near = min(abs(x), abs(y))
                 most = side * min(far + STEEP * near, MOST_LEFT * (far + near))
                 if p[q] > 0.0 or b.residual[q] - level < most:
                     _place(b, rims, found, i, j)
@@ -224,13 +241,16 @@ def _at_rim(
     the step S; ratio and slant; the gap over the scale, and its derivative by the ratio; derivatives of
     the gap by the differences along and across, m/Pa.
     """
-    xx, yy = x * x + NO_STEP, y * y
+    xx = x * x + NO_STEP
+    yy = y * y
     squares = xx + yy
-    step, width = np.sqrt(squares), 1.0 / np.sqrt(xx * x_share + yy * y_share)
+    step = np.sqrt(squares)
+    width = 1.0 / np.sqrt(xx * x_share + yy * y_share)
     scale = squares * width
     ratio = min(np.sqrt(p / step), END)
     wide = xx >= yy
-    along, across = np.sqrt(xx), abs(y)
+    along = np.sqrt(xx)
+    across = abs(y)
     far, near = along if wide else across, across if wide else along
     per_far = 1.0 / far
     slant = near * per_far
@@ -254,14 +274,16 @@ def _compute(c: NDArray, count: int, x_share: float, y_share: float, stiffness: 
         )
         unmet -= scale * left
         # what p - p₀ + stiffness (unmet - gap + gap₀) = 0 gives, the gap straight in the ratio
-        steep, some = min(slope, -LEAST_SLOPE), max(ratio, TOGETHER)
+        steep = min(slope, -LEAST_SLOPE)
+        some = max(ratio, TOGETHER)
         soft, per_step = step / stiffness, scale / step
         half = 0.5 * scale * steep / soft
         far = half * half - 2.0 * half * ratio + ratio * ratio - unmet / soft
         other = max(half + np.sqrt(max(far, 0.0)), 0.0)
         own = per_step * steep / max(ratio + other, TOGETHER)
         weight = 1.0 / (1.0 - SHARED * own * stiffness)
-        c[GAP * CHUNK + k], c[OWN * CHUNK + k] = scale * left, own
+        c[GAP * CHUNK + k] = scale * left
+        c[OWN * CHUNK + k] = own
         c[BY_P * CHUNK + k] = 0.5 * per_step * slope / some
         c[BY_X * CHUNK + k], c[BY_Y * CHUNK + k] = along, across
         bent = per_step / step
@@ -275,13 +297,16 @@ def _compute(c: NDArray, count: int, x_share: float, y_share: float, stiffness: 
 def _renew(b: Box, rims: Rims, number: int, level: float, stiffness: float) -> None:
     """Compute what is known of the cells that are due, so many, and take their gap off the residual."""
     x_share, y_share = 1.0 / rims.along**2, 1.0 / rims.across**2
-    c, p, known = rims.chunk, b.pressure, rims.known
+    c = rims.chunk
+    p = b.pressure
+    known = rims.known
     for first in range(0, number, CHUNK):
         count = min(CHUNK, number - first)
         for i in range(count):
             k = rims.due[first + i]
             q = rims.cell[k]
-            c[P * CHUNK + i], c[UNMET * CHUNK + i] = p[q], b.residual[q] - level
+            c[P * CHUNK + i] = p[q]
+            c[UNMET * CHUNK + i] = b.residual[q] - level
             c[X * CHUNK + i] = p[rims.below[k]] - p[rims.above[k]]
             c[Y * CHUNK + i] = p[q + 1] - p[q - 1]
         _compute(c, count, x_share, y_share, stiffness)
@@ -346,9 +371,12 @@ def give_back(b: Box, rims: Rims | None) -> None:
 @compiled(**CALLED)
 def follow(b: Box, rims: Rims, level: float, stiffness: float, allowed: float) -> None:
     """Let the gap that is left follow the pressure, straight where an error that is allowed, m, permits."""
-    due, p, known = 0, b.pressure, rims.known
+    due = 0
+    p = b.pressure
+    known = rims.known
     for k in range(rims.number[0]):
-        q, o = rims.cell[k], NUMBERS * k
+        q = rims.cell[k]
+        o = NUMBERS * k
         dp = p[q] - known[o + P]
         dx = p[rims.below[k]] - p[rims.above[k]] - known[o + X]
         dy = p[q + 1] - p[q - 1] - known[o + Y]
@@ -404,10 +432,14 @@ def weigh(b: Box, rims: Rims) -> None:
 @compiled(**INNER)
 def weigh_step(b: Box, rims: Rims, target: NDArray) -> tuple[float, float, float]:
     """Weigh a preconditioned residual likewise; return what m·target, previous·target and its sum gain."""
-    rho, moved, total = 0.0, 0.0, 0.0
+    rho = 0.0
+    moved = 0.0
+    total = 0.0
     for k in range(rims.number[0]):
-        q, o = rims.cell[k], NUMBERS * k
-        before, m = target[q], rims.known[o + MASKED]
+        q = rims.cell[k]
+        o = NUMBERS * k
+        before = target[q]
+        m = rims.known[o + MASKED]
         alone = rims.known[o + ALONE] * m
         target[q] = before * rims.known[o + WEIGHT] + alone
         gained = target[q] - before

@@ -126,7 +126,9 @@ def solve_positions(
             if not found.prepared:
                 return m, i, found.nx, found.ny
             b.solved[i] += 1
-            b.totals[i, m], b.residuals[i, m], b.levels[i, m] = found.total, found.residual, found.level
+            b.totals[i, m] = found.total
+            b.residuals[i, m] = found.residual
+            b.levels[i, m] = found.level
             b.counts[0] += 1
             b.counts[1] += found.iterations
             b.counts[2] += not found.converged
@@ -137,12 +139,16 @@ def solve_positions(
 @compiled(**INNER)
 def _set_gap(b: Block, m: int) -> float:
     """Set the gap at a position; return the approach of first touch."""
-    plane, gap, lowest = b.planes[m], b.gap, b.room.lowest
+    plane = b.planes[m]
+    gap = b.gap
+    lowest = b.room.lowest
     b.room.edges.row[0] = m * b.stride
     for j in range(len(lowest)):
         lowest[j] = np.inf
     for i in range(gap.shape[0]):
-        body, row, target = b.body[i], b.rows[m * b.stride + i], gap[i]
+        body = b.body[i]
+        row = b.rows[m * b.stride + i]
+        target = gap[i]
         for j in range(len(target)):
             target[j] = body[j] + plane - row[j]
             lowest[j] = min(lowest[j], target[j])
@@ -158,14 +164,17 @@ def _set_start(b: Block, m: int, i: int, touch: float) -> None:
 
     The approach before also tells by how much the positions alone mislead.
     """
-    here, before, below = b.pressures[m % 2], b.pressures[(m + 1) % 2], 0
+    here = b.pressures[m % 2]
+    before = b.pressures[(m + 1) % 2]
+    below = 0
     # two approaches make a line, a third tells how far off the line was
     while below < min(i, 3) and b.approaches[i - 1 - below] > touch:
         below += 1
     along = b.solved[i] > 0 and b.stride < b.start.shape[0]
     corrected = along and below > 0 and b.solved[i - 1] > 1
     across = below > 0 and not along
-    expected, now = b.expected[(i + 1) % 2], b.expected[i % 2]
+    expected = b.expected[(i + 1) % 2]
+    now = b.expected[i % 2]
     if corrected and below == 3:
         by_position, by_approach = misfits(here[i - 1], expected, here[i - 2], here[i - 3], _share(b, i - 1))
         across = by_approach < by_position
@@ -211,16 +220,22 @@ def solve_contact(known: Influence, b: Block, approach: float, pressure: NDArray
     zero on all of the overlap if nothing is known. `pressure` receives the pressure, unless a convolution is
     missing.
     """
-    hardness, load, compliance = b.hardness, b.load, b.compliance
+    hardness = b.hardness
+    load = b.load
+    compliance = b.compliance
     largest, first, end, left, right = overlap_box(b.gap, approach, b.room.lowest)
     forget_rims(b.room.rims)  # those of the contact before
     beside = cells_beside(b.room.rims)
-    first, end = max(first - beside, 0), min(end + beside, b.gap.shape[0])
-    left, right = max(left - beside, 0), min(right + beside, b.gap.shape[1])
+    first = max(first - beside, 0)
+    end = min(end + beside, b.gap.shape[0])
+    left = max(left - beside, 0)
+    right = min(right + beside, b.gap.shape[1])
     nx, ny = end - first, right - left
     if not is_prepared(known, nx, ny):
         return Solution(False, False, 0, 0.0, 0.0, 0.0, nx, ny)
-    outer, everywhere, edges = empty_box(nx, ny, b.room.outer), convolution(known, nx, ny), b.room.edges
+    outer = empty_box(nx, ny, b.room.outer)
+    everywhere = convolution(known, nx, ny)
+    edges = b.room.edges
     softest = known.softest + compliance * nx * ny + find_edges(outer, edges, first, left)
     task = Task(hardness, load, compliance, largest, b.rtol, softest, b.max_iterations)
     guessed = not _enter(outer, b.gap, approach, b.start, first, left, NOTHING * known.taps[0] * largest)
@@ -234,15 +249,18 @@ def solve_contact(known: Influence, b: Block, approach: float, pressure: NDArray
     set_rims(outer, b.room.rims, 0.0, known.taps[0])
     worst, level, top, bottom, near, far = survey(outer, task, b.room.rims, known.taps[0])
     iterations: int = np.int64(0)  # type: ignore[assignment]  # a literal one would be compiled apart
-    moving, last = True, (0, 0, 0, 0)
+    moving = True
+    last = (0, 0, 0, 0)
     while moving and worst > b.rtol * (largest + level) and iterations < b.max_iterations:
         row, rows = _grown(known, top, bottom, nx)
         column, columns = _grown(known, near, far, ny)
         if not is_prepared(known, rows, columns):
             return Solution(False, False, 0, 0.0, 0.0, 0.0, rows, columns)
-        before, again = worst, last == (row, column, rows, columns)
+        before = worst
+        again = last == (row, column, rows, columns)
         last = (row, column, rows, columns)
-        part, inner = rows < nx or columns < ny, outer
+        part = rows < nx or columns < ny
+        inner = outer
         if part:
             inner = empty_box(rows, columns, b.room.inner)
             cut(outer, row, column, inner)
@@ -272,7 +290,9 @@ def _enter(
     """Set overlap and pressure, if it is not too small to matter; return whether there is any."""
     added = 0.0
     for i in range(b.nx):
-        here, row, known = i * b.pitch, gap[first + i], start[first + i]
+        here = i * b.pitch
+        row = gap[first + i]
+        known = start[first + i]
         for j in range(b.ny):
             b.overlap[here + j] = approach - row[left + j]
             p = known[left + j] if known[left + j] > least else 0.0
@@ -296,7 +316,8 @@ def _scale(b: Box, hardness: float) -> bool:
     for q in range(len(b.pressure)):
         done += b.pressure[q] * b.overlap[q]
         stored += b.pressure[q] * (b.residual[q] + b.overlap[q])
-    factor, capped = done / stored, 0
+    factor = done / stored
+    capped = 0
     for q in range(len(b.pressure)):
         p = factor * b.pressure[q]
         capped += p > hardness
@@ -352,7 +373,8 @@ def continue_pressure(
     nx, ny = last.shape
     for i in range(nx - stride):
         known = share if i + 2 * stride < nx else 0.0
-        p, q = last[i + stride], before[min(i + 2 * stride, nx - 1)]
+        p = last[i + stride]
+        q = before[min(i + 2 * stride, nx - 1)]
         for j in range(ny):
             start[i, j] = min(max(p[j] + known * (p[j] - q[j]), 0.0), cap)
     for i in range(nx - stride, nx):

@@ -124,7 +124,10 @@ def solve_law(evaluate, law, step, free, load, guess, damping, in_flight, relati
     N; the force is exact to `relative` of itself plus the load.
     """
     free_approach, rate, compliance, rate_compliance = free
-    low, high, approach, elastic = -np.inf, np.inf, free_approach - compliance * guess, 0.0
+    low = -np.inf
+    high = np.inf
+    approach = free_approach - compliance * guess
+    elastic = 0.0
     for iteration in range(ITERATIONS):
         elastic, stiffness = evaluate(law, step, approach)
         force, stiffness = with_damping(elastic, stiffness, rate, rate_compliance, damping, in_flight)
@@ -162,7 +165,10 @@ def begin_step(system, motion, shapes):  # type: ignore[no-untyped-def]
     `shapes` (n, s) are the mode shapes under the contacts at the end.
     """
     a = system.coefficients
-    q, v, p, ahead = motion.displacement, motion.velocity, motion.push, motion.ahead
+    q = motion.displacement
+    v = motion.velocity
+    p = motion.push
+    ahead = motion.ahead
     for j in range(len(q)):  # few arrays to a loop: else the compiler does not make vectors of it
         ahead[j] = a[0, j] * q[j] + a[1, j] * v[j] + a[2, j] * p[j]
     for j in range(len(q)):
@@ -210,7 +216,8 @@ def product(row, values, first):  # type: ignore[no-untyped-def]
 def add(values, first, row, factor, factors):  # type: ignore[no-untyped-def]
     """Add to values from one on a row times a factor, and times factors of their own."""
     if len(row) > 0:
-        part, own = values[first : first + len(row)], factors[first : first + len(row)]
+        part = values[first : first + len(row)]
+        own = factors[first : first + len(row)]
         for j in range(len(row)):
             part[j] += own[j] * (row[j] * factor)
 
@@ -218,7 +225,8 @@ def add(values, first, row, factor, factors):  # type: ignore[no-untyped-def]
 @compiled(**INNER, **REASSOCIATE)
 def press(system, motion, shapes, k, change):  # type: ignore[no-untyped-def]
     """Add to the force of a contact at the end of the step, N."""
-    ahead, now = motion.ahead, system.coefficients[3]
+    ahead = motion.ahead
+    now = system.coefficients[3]
     add(ahead, 0, shapes[k], change, now)
     add(ahead, first_mode(system, shapes, k), system.shapes[k], change, now)
     core = motion.core_ahead[system.body[k]]
@@ -237,7 +245,8 @@ def free_of(system, motion, shapes, k):  # type: ignore[no-untyped-def]
     apart = motion.rail_ahead[k] + product(shapes[k], motion.ahead, 0)
     apart += product(system.shapes[k], motion.ahead, first_mode(system, shapes, k))
     apart += product(system.core_shapes[k], motion.core_ahead[system.body[k]], 0)
-    h, compliance = system.time_step, motion.compliance[k]
+    h = system.time_step
+    compliance = motion.compliance[k]
     approach = (compliance - system.softening[k]) * motion.trial[k] - apart
     rate = (1.5 * approach - 2.0 * motion.approach[0, k] + 0.5 * motion.approach[1, k]) / h
     return approach, rate, compliance, 1.5 * compliance / h
@@ -291,7 +300,8 @@ def end_step(system, motion, record, step, shapes, slopes):  # type: ignore[no-u
             motion.push[j] = system.constant[j]
         for k in range(motion.trial.shape[0]):
             force = motion.trial[k]
-            motion.force[1, k], motion.force[0, k] = motion.force[0, k], force
+            motion.force[1, k] = motion.force[0, k]
+            motion.force[0, k] = force
             add(motion.push, 0, shapes[k], force, system.ones)
             add(motion.push, first_mode(system, shapes, k), system.shapes[k], force, system.ones)
         for j in range(motion.push.shape[0]):
@@ -327,9 +337,14 @@ def contact_rates(system, motion, shapes, slopes, k):  # type: ignore[no-untyped
     The displacement of the structure is positive downwards, that of the body upwards; a rail, of which
     displacements alone are known, has no rate.
     """
-    q, v, core, own = motion.displacement, motion.velocity, motion.core[system.body[k]], system.shapes[k]
-    first, coordinates = first_mode(system, shapes, k), system.core_shapes.shape[1]
-    over, over_rate = motion.rail_ahead[k] + product(shapes[k], q, 0), product(shapes[k], v, 0)
+    q = motion.displacement
+    v = motion.velocity
+    core = motion.core[system.body[k]]
+    own = system.shapes[k]
+    first = first_mode(system, shapes, k)
+    coordinates = system.core_shapes.shape[1]
+    over = motion.rail_ahead[k] + product(shapes[k], q, 0)
+    over_rate = product(shapes[k], v, 0)
     slope = product(slopes[k], q, 0)
     body = product(system.core_shapes[k], core, 0) + product(own, q, first)
     body_rate = product(system.core_shapes[k], core, coordinates) + product(own, v, first)
@@ -346,11 +361,15 @@ def observe_contact(system, motion, record, step, shapes, slopes, k):  # type: i
     The approach that the law sees moves on, too.
     """
     over, over_rate, climb, body, body_rate = contact_rates(system, motion, shapes, slopes, k)
-    h, force, rise, rate = system.time_step, motion.force[0, k], 0.0, -(body_rate + over_rate + climb)
+    h = system.time_step
+    force = motion.force[0, k]
+    rise = 0.0
+    rate = -(body_rate + over_rate + climb)
     on_rail = system.channels.source.shape[0] > 0
     approach, rolling = record.relative_displacement[k], record.rolling_displacement[k]
     record.contact_force[k, step], record.over_displacement[k, step] = force, over
-    approach[step], rolling[step] = -(over + body), -body
+    approach[step] = -(over + body)
+    rolling[step] = -body
     motion.power[THROUGHPUT] += abs(force * over_rate) + abs(force * body_rate)
     if step > 0:
         closer = approach[step] - approach[step - 1]
@@ -373,7 +392,9 @@ def observe_contact(system, motion, record, step, shapes, slopes, k):  # type: i
 @compiled(**ONCE)
 def dissipated(system, motion, structure):  # type: ignore[no-untyped-def]
     """Power into damping, W: of the first oscillators, those of the structure, and of the bodies."""
-    over, bodies, v = 0.0, 0.0, motion.velocity
+    over = 0.0
+    bodies = 0.0
+    v = motion.velocity
     for j in range(structure):
         over += system.damping[j] * v[j] * v[j]
     for j in range(structure, len(v)):
@@ -403,7 +424,8 @@ def roll(sweep, solve, system, motion, record, laws, shapes, slopes, offset, sto
     `solve_contacts` and `solve` what it calls.
     """
     for step in range(motion.counts[0] + 1, stop + 1):
-        row, converged = step - offset, True
+        row = step - offset
+        converged = True
         if step > 0:
             begin_step(system, motion, shapes[row])
             converged = sweep(solve, system, motion, laws, row, shapes[row])

@@ -71,8 +71,11 @@ def traction_convolution(kernels: NDArray, nx: int, ny: int, dtype: DTypeLike) -
     Turned by half of a period along x, a spectrum is at i + ½ and j: its opposite is mx − 1 − i and −j, and a
     block of rows has its opposite in a block. Of half of the blocks, six vectors (block, my, 6, lanes).
     """
-    mx, my, n = 2 * smooth_length(nx), 2 * smooth_length(ny), width(dtype)
-    x, blocks = np.arange(1 - nx, nx), -(-mx // (2 * n))
+    mx = 2 * smooth_length(nx)
+    my = 2 * smooth_length(ny)
+    n = width(dtype)
+    x = np.arange(1 - nx, nx)
+    blocks = -(-mx // (2 * n))
     padded = np.zeros((3, mx, my), dtype=complex)
     padded[:, : 2 * nx - 1, : 2 * ny - 1] = kernels * np.exp(-1j * np.pi / mx * x)[:, None]
     found = np.fft.fft2(np.roll(padded, (1 - nx, 1 - ny), (1, 2)))[:, : blocks * n] / (2 * mx * my)
@@ -88,11 +91,16 @@ def _multiply(spectra: NDArray, place: int, x: NDArray, p: int, y: NDArray, q: i
     """Replace a spectrum, and its opposite, by the conjugate of that of the displacements."""
     n = lanes(x)
     (fr, fi), (gr, gi) = read_parts(x, p), read_parts(y, q)
-    a, b, c, d = fr + gr, fi - gi, fi + gi, gr - fr  # twice the spectra of both directions
+    a = fr + gr
+    b = fi - gi
+    c = fi + gi
+    d = gr - fr  # twice the spectra of both directions
     (xr, xi), (yr, yi) = read_parts(spectra, place), read_parts(spectra, place + 2 * n)
     mr, mi = read_parts(spectra, place + 4 * n)
-    ur, ui = xr * a - xi * b + mr * c - mi * d, xr * b + xi * a + mr * d + mi * c
-    vr, vi = mr * a - mi * b + yr * c - yi * d, mr * b + mi * a + yr * d + yi * c
+    ur = xr * a - xi * b + mr * c - mi * d
+    ui = xr * b + xi * a + mr * d + mi * c
+    vr = mr * a - mi * b + yr * c - yi * d
+    vi = mr * b + mi * a + yr * d + yi * c
     write_parts(x, p, ur - vi, -1.0 * (ui + vr))
     write_parts(y, q, ur + vi, ui - vr)
 
@@ -102,7 +110,8 @@ def _across(
     c: TractionConvolution, block: int, x: NDArray, y: NDArray, wide: int, a: NDArray, b: NDArray
 ) -> None:
     """Convolve a block of rows and its opposite, which end behind `wide` columns, to conjugates."""
-    my, n = len(c.roots_y) // 2, lanes(x)
+    my = len(c.roots_y) // 2
+    n = lanes(x)
     _clear(x, 2 * wide * n, 2 * my * n)
     _clear(y, 2 * wide * n, 2 * my * n)
     swapped = transform(x, a, c.radices_y, c.roots_y)
@@ -119,12 +128,20 @@ def convolve_traction(
     c: TractionConvolution, field: NDArray, nx: int, ny: int, pitch: int, work: NDArray, out: NDArray
 ) -> None:
     """Convolve a complex field (nx pitch,) on a box; zero, and without meaning, in idle columns."""
-    mx, my, n = len(c.roots_x) // 2, len(c.roots_y) // 2, lanes(work)
-    size, line, wide, half = 2 * max(mx, my) * n, 2 * my * n, whole_vectors(ny, n), -(-mx // (2 * n))
-    a, b, rows = work[:size], work[size : 2 * size], work[2 * size :]
+    mx = len(c.roots_x) // 2
+    my = len(c.roots_y) // 2
+    n = lanes(work)
+    size = 2 * max(mx, my) * n
+    line = 2 * my * n
+    wide = whole_vectors(ny, n)
+    half = -(-mx // (2 * n))
+    a = work[:size]
+    b = work[size : 2 * size]
+    rows = work[2 * size :]
     for first in range(0, wide, n):
         for i in range(nx):
-            cosine, sine = c.turn[2 * i], c.turn[2 * i + 1]
+            cosine = c.turn[2 * i]
+            sine = c.turn[2 * i + 1]
             for j in range(n):
                 value = field[i * pitch + first + j]
                 a[2 * i * n + j] = cosine * value.real - sine * value.imag
@@ -133,23 +150,28 @@ def convolve_traction(
         x = b if transform(a, b, c.radices_x, c.roots_x) else a
         for k in range(half):
             for part in range(0, 2 * n, n):
-                o, opposite = 2 * k * n * n + part, 2 * (mx - 1 - k * n) * n + part
+                o = 2 * k * n * n + part
+                opposite = 2 * (mx - 1 - k * n) * n + part
                 transpose(x, o, 2 * n, rows, k * line + 2 * first * n + part, 2 * n)
                 transpose(x, opposite, -2 * n, rows, (half + k) * line + 2 * first * n + part, 2 * n)
     for k in range(half):
-        one, other = rows[k * line : (k + 1) * line], rows[(half + k) * line : (half + k + 1) * line]
+        one = rows[k * line : (k + 1) * line]
+        other = rows[(half + k) * line : (half + k + 1) * line]
         _across(c, k, one, other, wide, a, b)
     for first in range(0, wide, n):
         for k in range(half):
             for part in range(0, 2 * n, n):
-                o, opposite = 2 * k * n * n + part, 2 * (mx - 1 - k * n) * n + part
+                o = 2 * k * n * n + part
+                opposite = 2 * (mx - 1 - k * n) * n + part
                 transpose(rows, k * line + 2 * first * n + part, 2 * n, a, o, 2 * n)
                 transpose(rows, (half + k) * line + 2 * first * n + part, 2 * n, a, opposite, -2 * n)
         x = b if transform(a, b, c.radices_x, c.roots_x) else a
         for i in range(nx):
-            cosine, sine = c.turn[2 * i], c.turn[2 * i + 1]
+            cosine = c.turn[2 * i]
+            sine = c.turn[2 * i + 1]
             for j in range(n):
-                re, im = x[2 * i * n + j], x[(2 * i + 1) * n + j]
+                re = x[2 * i * n + j]
+                im = x[(2 * i + 1) * n + j]
                 out[i * pitch + first + j] = complex(cosine * re - sine * im, -cosine * im - sine * re)
 
 
@@ -210,7 +232,8 @@ def traction_box(nx: int, ny: int, c: TractionConvolution) -> TractionBox:
 def linear_problem(b: TractionBox, c: TractionConvolution, taps: NDArray, directions: int) -> LinearProblem:
     """Make room for linear problems, where a direction of search is made orthogonal to the others."""
     size = len(b.bound)
-    real, fields = np.zeros((3, size), np.float32), np.zeros((4, size), np.complex64)
+    real = np.zeros((3, size), np.float32)
+    fields = np.zeros((4, size), np.complex64)
     carried = np.zeros(size + 2 * REACH * b.pitch, np.complex64)
     searched = np.zeros((2, directions, size), np.complex64)
     known = c, taps.astype(np.float32)
@@ -219,7 +242,9 @@ def linear_problem(b: TractionBox, c: TractionConvolution, taps: NDArray, direct
 
 def _room(c: TractionConvolution) -> NDArray:
     """Work of a convolution: all blocks of rows, and two more of the longer side."""
-    mx, my, n = len(c.roots_x) // 2, len(c.roots_y) // 2, width(c.roots_x.dtype)
+    mx = len(c.roots_x) // 2
+    my = len(c.roots_y) // 2
+    n = width(c.roots_x.dtype)
     return np.zeros(4 * n * (-(-mx // (2 * n)) * my + max(mx, my)), c.roots_x.dtype)
 
 
@@ -241,7 +266,8 @@ def _parts(field: NDArray) -> NDArray:
 
 @compiled(**INNER, **REASSOCIATE)
 def _product(left: NDArray, right: NDArray) -> float:
-    p, q = _parts(left), _parts(right)
+    p = _parts(left)
+    q = _parts(right)
     total = p.dtype.type(0.0)
     for i in range(len(p)):
         total += p[i] * q[i]
@@ -250,7 +276,8 @@ def _product(left: NDArray, right: NDArray) -> float:
 
 @compiled(**INNER, **REASSOCIATE)
 def _add(target: NDArray, factor: float, field: NDArray) -> None:
-    p, q = _parts(target), _parts(field)
+    p = _parts(target)
+    q = _parts(field)
     share = p.dtype.type(factor)
     for i in range(len(p)):
         p[i] += share * q[i]
@@ -281,10 +308,15 @@ def _judge(b: TractionBox, linear: LinearProblem) -> tuple[float, float]:
     """
     worst, total = 0.0, 0.0
     for q in range(len(b.bound)):
-        g, p, s, n, missed = b.bound[q], b.traction[q], b.slip[q], 0.0j, 0.0
+        g = b.bound[q]
+        p = b.traction[q]
+        s = b.slip[q]
+        n = 0.0j
+        missed = 0.0
         linear.kept[q] = 0.0
         if g > 0.0:
-            square, linear.kept[q] = _square(p), 1.0
+            square = _square(p)
+            linear.kept[q] = 1.0
             n = p * (1.0 / np.sqrt(square)) if square > (EDGE * g) ** 2 else n
             along = (s * n.conjugate()).real
             if along < 0.0:
@@ -293,33 +325,48 @@ def _judge(b: TractionBox, linear: LinearProblem) -> tuple[float, float]:
             else:
                 n = 0.0j
             missed = _square(s)
-        b.normal[q], linear.mirrored[q] = n, -0.5 * n * n
-        worst, total = max(worst, missed), total + missed
+        b.normal[q] = n
+        linear.mirrored[q] = -0.5 * n * n
+        worst = max(worst, missed)
+        total = total + missed
     return np.sqrt(worst), np.sqrt(total)
 
 
 @compiled(**CALLED, **REASSOCIATE)
 def _linearise(b: TractionBox, linear: LinearProblem, damping: float, norm: float, diagonal: float) -> None:
     """Set residual, slope and weight at the traction."""
-    sticking, unit = 1.0 / np.sqrt(1.0 + damping), 1.0 / norm
+    sticking = 1.0 / np.sqrt(1.0 + damping)
+    unit = 1.0 / norm
     for q in range(len(b.bound)):
-        n, left = b.normal[q], 0.0j
+        n = b.normal[q]
+        left = 0.0j
         against = -(b.slip[q] * n.conjugate()).real
         linear.slope[q], linear.weight[q] = damping, sticking
         if against > 0.0:
             slope = damping + against / (b.bound[q] * diagonal)
-            linear.slope[q], linear.weight[q] = slope, 1.0 / np.sqrt(1.0 + slope)
+            linear.slope[q] = slope
+            linear.weight[q] = 1.0 / np.sqrt(1.0 + slope)
         if b.bound[q] > 0.0:
             left = -unit * (b.slip[q] + against * n)
-        linear.residual[q], linear.change[q] = left, 0.0
+        linear.residual[q] = left
+        linear.change[q] = 0.0
 
 
 @compiled(**INNER, **REASSOCIATE)
 def _stencil(masked: NDArray, taps: NDArray, pitch: int, target: NDArray) -> None:
     """Apply the stencil to a field between REACH rows of zeros, both given by their parts in turn."""
-    row, c0, c1, c2, c3, c4, c5 = 2 * pitch, taps[0], taps[1], taps[2], taps[3], taps[4], taps[5]
-    above, m, below = masked[row - 4 :], masked[2 * row - 4 :], masked[3 * row - 4 :]
-    top, bottom = masked, masked[4 * row :]
+    row = 2 * pitch
+    c0 = taps[0]
+    c1 = taps[1]
+    c2 = taps[2]
+    c3 = taps[3]
+    c4 = taps[4]
+    c5 = taps[5]
+    above = masked[row - 4 :]
+    m = masked[2 * row - 4 :]
+    below = masked[3 * row - 4 :]
+    top = masked
+    bottom = masked[4 * row :]
     for q in range(len(target)):
         s = c0 * m[q + 4] + c1 * (above[q + 4] + below[q + 4]) + c2 * (m[q + 2] + m[q + 6])
         s += c3 * (above[q + 2] + above[q + 6] + below[q + 2] + below[q + 6])
@@ -339,7 +386,8 @@ def _carry(linear: LinearProblem, row: int, share: float, target: NDArray) -> No
 @compiled(**CALLED, **REASSOCIATE)
 def _precondition_traction(b: TractionBox, linear: LinearProblem, carried: float, target: NDArray) -> None:
     """Apply the stencil to the residual, carried on in steady rolling."""
-    masked, source = linear.carried[REACH * b.pitch :], linear.residual
+    masked = linear.carried[REACH * b.pitch :]
+    source = linear.residual
     if carried > 0.0:
         source = linear.response
         _carry(linear, b.pitch, np.float32(carried), source)
@@ -356,7 +404,8 @@ def _solve_linear(b: TractionBox, linear: LinearProblem, task: TractionTask) -> 
 
     Conjugate gradients, or, without an energy, conjugate residuals, truncated.
     """
-    first, held = _product(linear.residual, linear.residual), len(linear.steps)
+    first = _product(linear.residual, linear.residual)
+    held = len(linear.steps)
     against = linear.steps if task.symmetric else linear.responses
     for k in range(INNER_ITERATIONS):
         step, response = linear.steps[k % held], linear.responses[k % held]
@@ -386,7 +435,8 @@ def _solve_linear(b: TractionBox, linear: LinearProblem, task: TractionTask) -> 
 def _take(b: TractionBox, change: NDArray, unit: float) -> None:
     """Change the traction, along the edges of the discs where it slips, and project it on them."""
     for q in range(len(b.bound)):
-        step, n = unit * change[q], b.normal[q]
+        step = unit * change[q]
+        n = b.normal[q]
         step -= (
             step * n.conjugate()
         ).real * n  # what is left of it, in single precision, would leave the edge
@@ -430,12 +480,18 @@ def solve_traction(b: TractionBox, linear: LinearProblem, task: TractionTask) ->
     damped in proportion to what is left; with an energy, no step that raises it is taken. Returns the
     iterations, the convolutions, and the largest slip that is against the law, over that without traction.
     """
-    damping, last, largest, convolutions, iteration = 1.0, 0.0, 0.0, 1, 0
+    damping = 1.0
+    last = 0.0
+    largest = 0.0
+    convolutions = 1
+    iteration = 0
     for q in range(len(b.bound)):
         b.trial[q] = _within(b.traction[q], b.bound[q])
         square = _square(b.rigid[q]) if b.bound[q] > 0.0 else 0.0
-        last, largest = last + square, max(largest, square)
-    last, largest = np.sqrt(last), np.sqrt(largest)
+        last = last + square
+        largest = max(largest, square)
+    last = np.sqrt(last)
+    largest = np.sqrt(largest)
     energy = _twice_energy(b)
     _adopt(b)
     worst, norm = _judge(b, linear)
@@ -449,7 +505,8 @@ def solve_traction(b: TractionBox, linear: LinearProblem, task: TractionTask) ->
         _take(b, linear.change, norm / task.diagonal)
         reached = _twice_energy(b)
         if task.symmetric and reached > energy + ROUNDING * abs(energy):
-            damping, last = max(RETREAT * damping, LEAST), 0.0
+            damping = max(RETREAT * damping, LEAST)
+            last = 0.0
             _shorten(b)
             reached = _product(b.trial, b.response) + _product(b.trial, b.rigid)
         energy = reached
