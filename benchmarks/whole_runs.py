@@ -34,8 +34,8 @@ import json, sys, time, warnings
 clock = [time.perf_counter()]
 def lap(): clock.append(time.perf_counter())
 warnings.simplefilter("ignore")
-from asperity.case.cases import read_case
-case = read_case("wheel.toml")
+from asperity.case.cases import as_case  # as it was called before, too
+case = as_case("wheel.toml")
 from asperity.running import prepare_case, run
 lap()
 prepared = prepare_case(case, "wheel.toml")
