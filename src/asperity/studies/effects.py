@@ -213,7 +213,8 @@ def _left_out(table: xarray.Dataset, effect: xarray.DataArray) -> xarray.DataArr
 def _order(effect: xarray.DataArray, sweep: Collection[str]) -> NDArray[np.int64]:
     """Places of the variants by what they do to the whole, of several parts; mean over other keys."""
     whole = effect
-    for parts in {schema.EFFECT_RADIATOR.name, JUDGED} & set(effect.coords):
-        whole = whole.sel({parts: "total"})
+    for parts in (schema.EFFECT_RADIATOR.name, JUDGED):
+        if parts in effect.coords:
+            whole = whole.sel({parts: "total"})
     whole = whole.isel({dim: -1 for dim in whole.dims if dim not in sweep})
     return np.argsort(whole.mean([dim for dim in whole.dims if dim != VARIANT]).values, kind="stable")
