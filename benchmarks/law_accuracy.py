@@ -9,6 +9,7 @@ are kept in the folder, so that an interrupted run goes on; a point takes about 
     python benchmarks/law_accuracy.py map FOLDER           # the grid; --quick for a few of its points
     python benchmarks/law_accuracy.py aside FOLDER         # cases drawn at random: how wide the band must be
     python benchmarks/law_accuracy.py fresh FOLDER         # others, drawn afterwards: how often it holds
+    python benchmarks/law_accuracy.py own FOLDER           # what time step and cells change of `direct` itself
     python benchmarks/law_accuracy.py publish FOLDER       # data in the package; figure and tables
 
 `--share 1/2` computes the second half of the points, so that two processes can do them.
@@ -33,7 +34,7 @@ from typing import Any
 
 import numpy as np
 from law_pages import publish
-from law_points import BALL, WHEEL, Point, compute_point, place_on_map, solved
+from law_points import BALL, WHEEL, Point, compute_point, own_error, place_on_map, solved
 
 from asperity.progress import progress_bar
 
@@ -46,10 +47,12 @@ RANDOM = {
         (2718, 64, (22.0, 33.0, 48.0, 80.0)),
         (5772, 64, (24.0, 35.0, 50.0, 72.0)),
     ),
-    "fresh": ((9973, 128, (21.0, 30.0, 44.0, 62.0, 85.0)),),
+    "fresh": ((6007, 128, (23.0, 31.0, 46.0, 60.0, 82.0)),),
 }
 """Sets of random cases, those that fill the map and set the bands and those that test these: seed, number,
 and speeds of the wheels, m/s, few of them: each has a track to lay out."""
+OWN = 24
+"""Of the fresh cases, the first whose `direct` is rolled again with half the step and half the cells."""
 SPEEDS = {BALL: (0.3, 3.0), WHEEL: (20.0, 90.0)}
 """Least and greatest speed of the map, m/s."""
 
@@ -125,6 +128,20 @@ def points_of(part: str) -> list[tuple[int, Point]]:
     ]
 
 
+def compute_own(options: argparse.Namespace) -> None:
+    """Roll `direct` of the first fresh cases again, on finer steps and cells."""
+    number, shares = map(int, options.share.split("/"))
+    folder = options.folder / "own"
+    folder.mkdir(parents=True, exist_ok=True)
+    for seed, point in points_of("fresh")[:OWN][number::shares]:
+        file = folder / f"{point.name}.json"
+        if not file.exists():
+            with progress_bar() as progress:
+                error = own_error(point, seed, options.folder, progress)
+            file.write_text(json.dumps({"point": point.name, **error}))
+            print(f"{point.name}: {error}", file=sys.stderr, flush=True)
+
+
 def compute(options: argparse.Namespace) -> None:
     """Compute the points of a part that the folder does not hold yet, or what `direct` gives of them."""
     number, shares = map(int, options.share.split("/"))
@@ -166,7 +183,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("part", choices=["map", "aside", "fresh", "publish"])
+    parser.add_argument("part", choices=["map", "aside", "fresh", "own", "publish"])
     parser.add_argument("folder", type=Path, help="where finished points are kept")
     parser.add_argument("--quick", action="store_true", help=f"the first {QUICK} points alone")
     parser.add_argument(
@@ -174,6 +191,9 @@ def main() -> None:
     )
     parser.add_argument("--direct", action="store_true", help="`direct` alone; its forces are kept")
     options = parser.parse_args()
+    if options.part == "own":
+        compute_own(options)
+        return
     if options.part != "publish":
         compute(options)
         return

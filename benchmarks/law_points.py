@@ -100,13 +100,15 @@ def longest_wave(length: float, shortest: float, hurst: float) -> float:
     return float(brentq(over, 1.0001 * shortest, 60.0 * length + 2.0 * shortest, rtol=1e-3))
 
 
-def case_of(point: Point, seed: int, laws: Sequence[str]) -> Case:
-    """One path of a point."""
+def case_of(
+    point: Point, seed: int, laws: Sequence[str], *, finer: float = 1.0, longest_step: float = LONGEST_STEP
+) -> Case:
+    """One path of a point; cells `finer` times as small, and no time step longer than that, s."""
     approach, semi_axis = smooth_contact(point.kind, point.load)
     section = SECTION[point.kind]
     relative = min(point.finest, CELLS_PER_WAVE * point.correlation)
     shortest = min(relative * semi_axis, point.speed / EXCITED)
-    spacing = min(semi_axis / CELLS, shortest / CELLS_PER_WAVE)
+    spacing = min(semi_axis / CELLS, shortest / CELLS_PER_WAVE) / finer
     passed = spacing / point.speed  # s
     length = 2.0 * semi_axis * point.correlation / math.sqrt(point.anisotropy)
     longest = longest_wave(max(length, LEAST_LENGTH * shortest), shortest, point.hurst)
@@ -138,8 +140,9 @@ def case_of(point: Point, seed: int, laws: Sequence[str]) -> Case:
         window = "{window} m"
         samples = 3
         sample_length = "{6 * window} m"
+        rim_cells = "covered"
         [numerics]
-        time_step = "{passed / math.ceil(passed / LONGEST_STEP)} s"
+        time_step = "{passed / math.ceil(passed / longest_step)} s"
         """
     )
 
@@ -149,9 +152,11 @@ def computed_of(case: Case, progress: Progress) -> Computed:
     return compute(prepare_case(case), progress)  # type: ignore[no-any-return]
 
 
-def solved(point: Point, seed: int, folder: Path, progress: Progress) -> dict[str, NDArray[Any]]:
-    """Roll `direct` over a path, unless the folder holds it for the very same case."""
-    case, file = case_of(point, seed, ["direct"]), folder / f"{point.name}_{seed}.npz"
+def solved(
+    point: Point, seed: int, folder: Path, progress: Progress, **grid: float
+) -> dict[str, NDArray[Any]]:
+    """Roll `direct` over a path, unless the folder holds it for the very same case; `grid` as of `case_of`."""
+    case, file = case_of(point, seed, ["direct"], **grid), folder / f"{point.name}_{seed}.npz"
     if file.exists():
         with np.load(file, allow_pickle=False) as kept:
             if str(kept["case"]) == case.text:
@@ -201,6 +206,34 @@ def rolled(case: Case, direct: Mapping[str, NDArray[Any]], progress: Progress) -
         "centres": centres.tolist(),
         "dynamic": float(reference.std()),
         "area_ratio": computed.reduction.pressed.area_ratio,
+    }
+
+
+def own_error(point: Point, first_seed: int, folder: Path, progress: Progress) -> dict[str, float]:
+    """Change of `direct`, rms of its bands in dB, with half the time step and with cells half as large.
+
+    Both are rolled with half the time step, or less, of the point; cells are compared at equal steps as far as
+    a finer grid leaves them.
+    """
+    step = case_of(point, first_seed, ["direct"]).time_step
+    ways: dict[str, dict[str, float]] = {
+        "direct": {},
+        "direct_half_step": {"longest_step": 0.51 * step},
+        "direct_fine": {"longest_step": 0.51 * step, "finer": 2.0},
+    }
+    levels = {}
+    for name, grid in ways.items():
+        energy = 0.0
+        for number in range(point.seeds):
+            run = solved(point, first_seed + number, folder / name, progress, **grid)
+            settled = case_of(point, first_seed + number, ["direct"], **grid).time_step
+            segment = round(SEGMENT / settled)
+            bands = band_levels(*psd(run["force"], settled, segment=segment), low=LOW, high=HIGH)[1]
+            energy = energy + 10.0 ** (bands / 10.0)
+        levels[name] = 10.0 * np.log10(energy)
+    return {
+        "step": float(np.sqrt(np.mean((levels["direct_half_step"] - levels["direct"]) ** 2))),
+        "grid": float(np.sqrt(np.mean((levels["direct_fine"] - levels["direct_half_step"]) ** 2))),
     }
 
 
