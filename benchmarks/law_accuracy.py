@@ -9,7 +9,7 @@ are kept in the folder, so that an interrupted run goes on; a point takes about 
     python benchmarks/law_accuracy.py map FOLDER           # the grid; --quick for a few of its points
     python benchmarks/law_accuracy.py aside FOLDER         # cases drawn at random: how wide the band must be
     python benchmarks/law_accuracy.py fresh FOLDER         # others, drawn afterwards: how often it holds
-    python benchmarks/law_accuracy.py own FOLDER           # what time step and cells change of `direct` itself
+    python benchmarks/law_accuracy.py own FOLDER           # what time step and cells change of `direct`
     python benchmarks/law_accuracy.py publish FOLDER       # data in the package; figure and tables
 
 `--share 1/2` computes the second half of the points, so that two processes can do them.

@@ -155,7 +155,7 @@ def computed_of(case: Case, progress: Progress) -> Computed:
 def solved(
     point: Point, seed: int, folder: Path, progress: Progress, **grid: float
 ) -> dict[str, NDArray[Any]]:
-    """Roll `direct` over a path, unless the folder holds it for the very same case; `grid` as of `case_of`."""
+    """Roll `direct` over a path, unless the folder holds it for the very same case; `grid`: of `case_of`."""
     case, file = case_of(point, seed, ["direct"], **grid), folder / f"{point.name}_{seed}.npz"
     if file.exists():
         with np.load(file, allow_pickle=False) as kept:
@@ -212,8 +212,8 @@ def rolled(case: Case, direct: Mapping[str, NDArray[Any]], progress: Progress) -
 def own_error(point: Point, first_seed: int, folder: Path, progress: Progress) -> dict[str, float]:
     """Change of `direct`, rms of its bands in dB, with half the time step and with cells half as large.
 
-    Both are rolled with half the time step, or less, of the point; cells are compared at equal steps as far as
-    a finer grid leaves them.
+    Both are rolled with half the time step, or less, of the point; cells are compared at equal steps as far
+    as a finer grid leaves them.
     """
     step = case_of(point, first_seed, ["direct"]).time_step
     ways: dict[str, dict[str, float]] = {
@@ -226,9 +226,9 @@ def own_error(point: Point, first_seed: int, folder: Path, progress: Progress) -
         energy = 0.0
         for number in range(point.seeds):
             run = solved(point, first_seed + number, folder / name, progress, **grid)
-            settled = case_of(point, first_seed + number, ["direct"], **grid).time_step
-            segment = round(SEGMENT / settled)
-            bands = band_levels(*psd(run["force"], settled, segment=segment), low=LOW, high=HIGH)[1]
+            time_step = case_of(point, first_seed + number, ["direct"], **grid).time_step
+            segment = round(SEGMENT / time_step)
+            bands = band_levels(*psd(run["force"], time_step, segment=segment), low=LOW, high=HIGH)[1]
             energy = energy + 10.0 ** (bands / 10.0)
         levels[name] = 10.0 * np.log10(energy)
     return {
