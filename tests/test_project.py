@@ -51,6 +51,8 @@ def module_at(path):
 def test_the_version_is_the_same_everywhere():
     assert f"\nversion: {asperity.__version__}\n" in text("CITATION.cff")
     assert f"\n## {asperity.__version__} " in text("CHANGELOG.md")
+    releases = re.findall(r"^## (\S+)", text("CHANGELOG.md"), re.M)
+    assert releases == [asperity.__version__, "Unreleased:"]  # whose lines are added at the end
     assert "version" in PROJECT["dynamic"]
 
 
@@ -97,10 +99,12 @@ TOP = {
     "ARCHITECTURE.md",
     "CHANGELOG.md",
     "CITATION.cff",
+    "CODE_OF_CONDUCT.md",
     "CONFORMANCE.md",
     "CONTRIBUTING.md",
     "LICENSE",
     "README.md",
+    "SECURITY.md",
 }
 SOURCES = {"pyproject.toml", "hatch_build.py"}
 
