@@ -2,6 +2,7 @@
 
 import ast
 import importlib.util
+import json
 import re
 import statistics
 import subprocess
@@ -20,6 +21,7 @@ from asperity.scenes.result import METHOD
 from command_line import call
 
 ROOT = Path(__file__).parents[1]
+PERSON = "TO BE FILLED IN BY A PERSON"
 READ = (".py", ".md", ".bib", ".rst", ".toml")
 USED = ("readers", "uff", "cluster", "app")  # extras of people, of which cupy needs a GPU
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
@@ -30,6 +32,21 @@ def text(name):
 
 
 README, PAPER = text("README.md"), text("paper/paper.md").split("---", 2)[2]
+
+
+def test_recipe_and_archive_say_what_the_project_says():
+    recipe = yaml.safe_load(text("packaging/conda/recipe.yaml"))
+    needed = [line.replace("matplotlib-base", "matplotlib") for line in recipe["requirements"]["run"][1:]]
+    assert required(line.replace(" ", "") for line in needed) == required(PROJECT["dependencies"])
+    assert recipe["context"]["version"] == asperity.__version__
+    assert recipe["about"]["license"] == PROJECT["license"]
+    assert json.loads(text(".zenodo.json"))["title"] == yaml.safe_load(text("CITATION.cff"))["title"]
+    left = [
+        name
+        for name in ("SECURITY.md", "CODE_OF_CONDUCT.md", ".zenodo.json", "CITATION.cff")
+        if PERSON in text(name)
+    ]
+    assert all(name in text("CONTRIBUTING.md") for name in (*left, "packaging/README.md"))
 
 
 def workflow(name):
@@ -60,8 +77,8 @@ def test_the_gate_and_the_workflows_call_the_same_commands():
     jobs = workflow("checks")["jobs"]
     assert text(".ci/run").rstrip().endswith('.ci/checks "$@"')
     assert "${{ matrix.versions.command }}" in commands(jobs["checks"])
-    oldest, newest = jobs["checks"]["strategy"]["matrix"]["versions"]
-    assert newest["command"] == ".ci/checks --long"
+    oldest, whole = jobs["checks"]["strategy"]["matrix"]["versions"]
+    assert whole["command"] == ".ci/checks --long"
     assert f"{oldest['command']} " in text(".ci/checks")
     assert any(command.startswith(".ci/checks --long --cov") for command in commands(jobs["coverage"]))
     assert ".ci/build" in commands(jobs["build"])
@@ -70,6 +87,15 @@ def test_the_gate_and_the_workflows_call_the_same_commands():
     assert hook["entry"] == ".ci/lint"
     assert ".ci/lint" in text(".ci/checks")
     assert ".ci/docs" in text(".ci/checks")
+
+
+def test_actions_are_named_by_their_hash_and_workflows_are_read_by_a_checker():
+    used = [step["uses"] for name in ("checks", "release") for job in workflow(name)["jobs"].values()
+            for step in job.get("steps", []) if "uses" in step]  # fmt: skip
+    assert len(used) > 8
+    assert all(re.fullmatch(r"[\w./-]+@[0-9a-f]{40}", each) for each in used)
+    assert "workflow_dispatch" in workflow("checks")[True]  # YAML's "on"
+    assert "\nzizmor " in text(".ci/lint")
 
 
 def required(lines):
@@ -85,10 +111,14 @@ def test_the_lowest_versions_declared_are_tested():
     floors = [line for line in text(".ci/floors.txt").splitlines() if not line.startswith("#")]
     assert all("==" in line for line in floors)
     assert required(floors) == required(needed)
-    versions = workflow("checks")["jobs"]["checks"]["strategy"]["matrix"]["versions"]
-    oldest, newest = versions
+    matrix = workflow("checks")["jobs"]["checks"]["strategy"]["matrix"]
+    oldest, *others = [*matrix["versions"], *(leg["versions"] for leg in matrix["include"])]
     assert oldest["releases"] == "-c .ci/floors.txt"
-    assert newest["releases"] == ""
+    assert not any(each["releases"] for each in others)
+    tested = sorted(each["python"] for each in (oldest, *others) if "may_fail" not in each)
+    assert [f"Programming Language :: Python :: {each}" for each in tested] == [
+        each for each in PROJECT["classifiers"] if ":: 3." in each
+    ]
     (install,) = [each for each in commands(workflow("checks")["jobs"]["checks"]) if "pip install" in each]
     assert install.endswith(" ${{ matrix.versions.releases }}")
     assert PROJECT["requires-python"] == f">={oldest['python']}"
