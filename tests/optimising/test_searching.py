@@ -22,6 +22,23 @@ def limits(n=BANDS, reach=30.0, price=1.0, **more):
 weights = st.lists(st.floats(-4.0, 4.0), min_size=3, max_size=12).map(lambda x: 10.0 ** np.array(x))
 
 
+@pytest.mark.parametrize("share", [0.0, 1.0])
+@pytest.mark.parametrize("seed", range(20))
+def test_rms_heights_at_the_ends_of_what_bands_may_have_are_met(seed, share):
+    """All bands then lie on their bounds, whatever prices and weights are."""
+    random = np.random.default_rng(seed)
+    start = random.normal(0.0, 10.0, 6)
+    lowest = start - random.uniform(0.0, 15.0, 6)
+    highest = start + random.uniform(0.0, 15.0, 6)
+    wanted = highest if share else lowest
+    name = "rms_at_least" if share else "rms_at_most"
+    more = {name: allocation.rms_of(wanted)}
+    price = random.uniform(0.0, 2.0, 6) * (random.random(6) > 0.3)
+    bounds = allocation.Limits(start, lowest, highest, price, **more)
+    response = allocation.Response(random.uniform(0.0, 1.0, 6), 0.0)
+    np.testing.assert_allclose(allocation.quietest(response, bounds), wanted, atol=1e-3)
+
+
 @given(weights, st.integers(0, 2**32 - 1))
 @settings(max_examples=30)
 def test_a_limit_gives_each_band_its_share_by_price(weight, seed):

@@ -193,3 +193,23 @@ def test_the_array_that_is_advised_holds_no_positions(tmp_path):
     np.savez(tmp_path / "a.npz", x=1e-6 * X, z=Z)
     with pytest.raises(InputError, match=r'received x, z; .* Choose one, as in array="z"'):
         read_surface(tmp_path / "a.npz")
+
+
+@pytest.mark.parametrize(("head", "form"), [
+    ("x [um];z [um];z error [um]", "{x:.2f};{z:.6f};0.01"),
+    ("x [um];std [um];z [um]", "{x:.2f};0.01;{z:.6f}"),
+    ("x [um];Höhe [um];Messunsicherheit [nm]", "{x:.2f};{z:.6f};10"),
+    ("x [um];raw [um];filtered [um]", "{x:.2f};{z:.6f};{a:.2f}"),
+    ("No;Position (um);Profile (um);Waviness (um);Roughness (um)", "{n};{x:.2f};{z:.6f};0.1;{a:.2f}"),
+])  # fmt: skip
+def test_what_stands_beside_heights_is_no_second_line(read, head, form):
+    """Deviations and filtered parts have the unit of heights, as lines side by side have."""
+    line = read(f"{head}\n{rows(form)}")
+    np.testing.assert_allclose(line.heights, 1e-6 * Z, atol=1e-12)
+    assert "without" in line.source
+
+
+def test_lines_of_roughness_side_by_side_stay_lines(read):
+    found = read("x [mm];roughness left [um];roughness right [um]\n" + rows("{x:.2f};{z:.6f};{z:.6f}"))
+    assert isinstance(found, HeightMap)
+    assert found.shape == (40, 2)

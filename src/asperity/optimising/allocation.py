@@ -173,15 +173,16 @@ def _shared(response: Response, limits: Limits, silence: float) -> Array:
     (low, high, least, most), price = _energies(limits), _at_least(limits.price, FREE)
     heard = silence * _at_least(response.weights, UNHEARD)
 
-    def energies(relief: float) -> Array:
-        below = heard - relief
+    def energies(below: Array) -> Array:
         return np.clip(np.divide(price, below, out=np.full_like(low, np.inf), where=below > 0.0), low, high)
 
-    found = energies(0.0)
-    wanted = float(np.clip(found.sum(), max(least, low.sum()), min(most, high.sum())))
+    found = energies(heard)
+    wanted = float(np.clip(np.clip(found.sum(), least, most), low.sum(), high.sum()))
     if wanted != found.sum():
-        ends = heard.min() - (price / low).max(), heard.max()
-        found = energies(_root(lambda relief: energies(relief).sum() - wanted, *ends))
+        beyond = heard - heard.min()  # where silence weighs far more than prices, relief is lost beside it
+        ends = -2.0 * (price / low).max(), beyond.max()
+        relief = _root(lambda relief: energies(beyond - relief).sum() - wanted, *ends)
+        found = energies(beyond - relief)
     return _levels(found, limits)
 
 

@@ -66,6 +66,14 @@ _Z = re.compile(
     re.IGNORECASE,
 )
 """Titles of the places and of the heights of points."""
+_BESIDE = re.compile(
+    r"\W*(?:(?:z|heights?)[ _.-]?)?(?:std(?:[ _.-]?dev)?|stdev|sd|sigma|err(?:or)?s?|uncertainty"
+    r"|standard[ _](?:deviation|error)|standardabweichung|(?:mess)?unsicherheit|écart[ -]type|incertitude"
+    r"|waviness|roughness|filtered|smoothed|fit(?:ted)?|residuals?"
+    r"|welligkeit|rauheit|gefiltert|ondulation|rugosité)(?![a-z])",
+    re.IGNORECASE,
+)
+"""Titles of what stands beside heights and is none: how sure they are, and parts of them."""
 MOST_TITLE = 200
 """Characters of a title."""
 MOST_WORDS = 4
@@ -151,12 +159,16 @@ def columns_of_heights(table: Array, titles: list[Title]) -> tuple[Array, list[T
     """Columns of a table, and their titles, in the order x, y, z where titles say which these are.
 
     Left out are numbers of the points, columns without a title and a height, and what else stands beside
-    x, y and z. All are kept where titles name several heights, or do not name them.
+    x, y and z; beside heights that are named also how sure they are, and their filtered parts. All else is
+    kept where titles name several heights, or do not name them.
     """
     names = [title.name for title in titles]
     kept = [place for place, name in enumerate(names) if name or not np.isnan(table[:, place]).all()]
     if len(kept) > 2:
         kept = [place for place in kept if not _COUNT.match(names[place]) or not _counts(table[:, place])]
+    plain = [place for place in kept if not _BESIDE.match(names[place])]
+    if any(_Z.match(names[place]) for place in plain):
+        kept = plain
     found = [[place for place in kept if role.match(names[place])] for role in (_X, _Y, _Z)]
     if len(found[0]) == len(found[2]) == 1 and len(found[1]) < 2:
         others = [place for place in kept if [place] not in found]
