@@ -1,3 +1,5 @@
+import tracemalloc
+
 import numpy as np
 import pytest
 import scipy.signal
@@ -128,3 +130,15 @@ def test_a_record_beyond_memory_is_a_mean_of_segments_that_fill_it(monkeypatch):
     frequency, density = spectra.psd(noise, 0.1)
     assert len(frequency) <= 2**9 + 1
     assert density.sum() * frequency[1] == pytest.approx(noise.var(), rel=0.03)
+
+
+def test_a_long_segment_takes_few_times_the_memory_of_its_samples():
+    """Of what is transformed, windows and densities: beside it lies what it becomes, nothing else."""
+    signal = np.random.default_rng(0).normal(size=2**18)
+    spectra.psd(signal, 1.0)  # imports
+    tracemalloc.start()
+    try:
+        spectra.psd(signal, 1.0)
+        assert tracemalloc.get_traced_memory()[1] < 2.8 * signal.nbytes
+    finally:
+        tracemalloc.stop()

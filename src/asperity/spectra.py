@@ -54,7 +54,7 @@ def psd(signal: ArrayLike, spacing: float, *, segment: int | None = None) -> tup
     length = longest_segment(samples) if segment is None else int(segment)
     require(2 <= length <= samples, "segment", length, f"2 to {samples} samples", "Shorten the segment.")
     mean = values.mean(axis=-1, keepdims=True)[..., None, :]
-    window = hann_window(length)
+    energy = np.square(hann_window(length)).sum()
     advance = length - length // 2
     segments = sliding_window_view(values, length, axis=-1)[..., ::advance, :]
     count = segments.shape[-2]
@@ -62,7 +62,7 @@ def psd(signal: ArrayLike, spacing: float, *, segment: int | None = None) -> tup
     power = np.zeros((*values.shape[:-1], length // 2 + 1))
     for first in range(0, count, together):
         windowed = segments[..., first : first + together, :] - mean
-        windowed *= window
+        windowed *= hann_window(length)  # not held beside what is transformed
         spectra = rfft(windowed, overwrite_x=True)
         del windowed
         np.square(spectra.real, out=spectra.real)  # in place: records may be as long as memory allows
@@ -70,7 +70,7 @@ def psd(signal: ArrayLike, spacing: float, *, segment: int | None = None) -> tup
         spectra.real += spectra.imag
         power += spectra.real.sum(axis=-2)
         del spectra
-    power *= 2.0 * spacing / (count * np.square(window, out=window).sum())
+    power *= 2.0 * spacing / (count * energy)
     power[..., 0] *= 0.5
     if length % 2 == 0:
         power[..., -1] *= 0.5  # zero and half the sampling frequency have no other side
@@ -119,7 +119,12 @@ def lowest_band(samples: int, step: float, *, segment: int | None = None) -> flo
 
 def hann_window(length: int) -> Array:
     """Periodic Hann window of `length` samples."""
-    return 0.5 - 0.5 * np.cos(2.0 * np.pi / length * np.arange(length))
+    window = np.arange(length, dtype=np.float64)
+    window *= 2.0 * np.pi / length
+    np.cos(window, out=window)
+    window *= -0.5
+    window += 0.5
+    return window
 
 
 def averaging_time(samples: int, spacing: float, *, segment: int | None = None) -> float:
