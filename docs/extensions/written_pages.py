@@ -30,6 +30,7 @@ COPIED = {
     "ARCHITECTURE.md": "architecture",
     "CONTRIBUTING.md": "contributing",
     "CHANGELOG.md": "changelog",
+    "SECURITY.md": "security",
 }
 """Pages that stand elsewhere in the repository, and their names here."""
 HOMES = {ROOT / source: WRITTEN / f"{name}.md" for source, name in COPIED.items()} | {
