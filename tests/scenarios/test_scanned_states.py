@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from asperity.contact.scan import scan_forces
+from asperity.errors import ComputationError
 from asperity.laws.layout import force
 from asperity.laws.table import Table
 from asperity.reduction.stiffness import ForceTable
@@ -71,6 +72,27 @@ def test_a_motion_that_leaves_what_was_scanned_is_rolled_anew_over_more(own_cach
     exact = every.first.contact_force
     assert (few.first.contact_force - exact).std() < 1e-3 * exact.std()
     assert bool(every.first.flights[0][0].size) == (name == "thrown off")
+
+
+@pytest.mark.filterwarnings("ignore::asperity.errors.PhysicsWarning")  # so rough that windows are filled
+@pytest.mark.parametrize("seed", [1, 8])
+def test_a_motion_that_the_states_scanned_do_not_carry_is_rolled_over_all(own_cache, monkeypatch, seed):
+    """Under one seed none of the states expected touches at the start, under the other motion goes beyond."""
+    keys = {"surface": {"rms": "2 um"}, "ball": {"load": "5 N"}, "settling": "0 s", "seed": seed}
+    case = changed("ball-on-beam", laws=["table"], **keys)
+    every, whole = rolled(monkeypatch, case, (0.0, 1e9))
+    few, states = rolled(monkeypatch, case, (0.75, 1.25))
+    assert states == whole
+    np.testing.assert_array_equal(few.first.contact_force, every.first.contact_force)
+
+
+def test_what_fails_over_all_states_fails(own_cache, monkeypatch):
+    def fail(*_, **__):
+        raise ComputationError("no rest", "another load")
+
+    monkeypatch.setattr("asperity.scenes.compute.roll_bodies", fail)
+    with pytest.raises(ComputationError, match="no rest"):
+        compute(prepare_case(changed("ball-on-beam", laws=["table"])), lambda *_: None)
 
 
 def level(heights, step, highest):

@@ -1,6 +1,7 @@
 """A case of any kind is computed: from textures to the motion of what rolls and of what is rolled over."""
 
 import json
+import math
 import time
 import warnings
 from collections.abc import Callable, Sequence
@@ -15,7 +16,7 @@ from asperity.case.any_case import AnyCase
 from asperity.case.form import content, file_digest
 from asperity.case.scene import Case
 from asperity.contact.scan import ScannedForces
-from asperity.errors import PhysicsWarning
+from asperity.errors import ComputationError, PhysicsWarning
 from asperity.laws import Need, Role, in_role, names, needs_of, spec_of
 from asperity.progress import Progress
 from asperity.radiation.passing import passed_points
@@ -200,18 +201,26 @@ def _within_scan(
 ) -> tuple[RolledBodies, Sequence[ReducedCase]]:
     """Roll by a law of these materials; where motion leaves what was scanned, scan more and roll anew.
 
-    With the materials that it took.
+    With the materials that it took. Where none of the states scanned touches a valley that the record begins
+    over, or motion goes far beyond them, rolling fails: it is tried again with all states.
     """
     if Need.SCAN not in spec_of(law).needs:
         return once(every), every
     while True:
+        failure = None
         with PhysicsWarning.caught() as caught:
-            run = once(every)
-        visited = float(run.visited[:, 0].min()), float(run.visited[:, 1].max())
+            try:
+                run = once(every)
+                visited = float(run.visited[:, 0].min()), float(run.visited[:, 1].max())
+            except ComputationError as error:
+                failure = error
+                visited = -math.inf, math.inf
         wider = [materials.wider(visited) for materials in every]
         if not any(wider):
             break
         every = [more or materials for more, materials in zip(wider, every, strict=True)]
+    if failure is not None:
+        raise failure
     for each in caught:
         warnings.warn(each.message, stacklevel=2)
     return run, every
