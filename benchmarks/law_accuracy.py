@@ -142,6 +142,12 @@ def compute_own(options: argparse.Namespace) -> None:
             print(f"{point.name}: {error}", file=sys.stderr, flush=True)
 
 
+def read_own(folder: Path) -> dict[str, dict[str, float]]:
+    """What step and cells change of `direct`, dB, by the name of the point."""
+    found = [json.loads(file.read_text()) for file in sorted(folder.glob("*.json"))]
+    return {error["point"]: error for error in found}
+
+
 def compute(options: argparse.Namespace) -> None:
     """Compute the points of a part that the folder does not hold yet, or what `direct` gives of them."""
     number, shares = map(int, options.share.split("/"))
@@ -197,7 +203,8 @@ def main() -> None:
     if options.part != "publish":
         compute(options)
         return
-    publish({part: read(part, options.folder / part) for part in ("map", "aside", "fresh")})
+    parts = {part: read(part, options.folder / part) for part in ("map", "aside", "fresh")}
+    publish(parts, read_own(options.folder / "own"))
 
 
 if __name__ == "__main__":

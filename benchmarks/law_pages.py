@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from law_points import BALL, RECORD, SETTLING, WHEEL
+from law_points import BALL, RECORD, SETTLING, WHEEL, Point
 
 from asperity.reference.law_accuracy import LEAST, LawMap, MappedPoint, law_map_of, mapped_points
 from asperity.scenarios.law_choice import estimate
@@ -35,8 +35,8 @@ LAWS = (
 Record = Mapping[str, Any]
 
 
-def publish(parts: Mapping[str, Sequence[Record]]) -> None:
-    """Write the data, draw the figure, and fill the tables of the page."""
+def publish(parts: Mapping[str, Sequence[Record]], own: Mapping[str, Mapping[str, float]]) -> None:
+    """Write the data, draw the figure, fill the tables of the page; `own`: what grids change of `direct`."""
     bands = parts["fresh"][0]["paths"][0]["centres"]
     grid = [summary(record) for record in parts["map"]]
     aside, fresh = ([summary(record) for record in parts[part]] for part in ("aside", "fresh"))
@@ -58,6 +58,7 @@ def publish(parts: Mapping[str, Sequence[Record]]) -> None:
             "errors": errors_table(data),
             "points": points_table(data),
             "hits": hits_table(mapped, mapped_points(fresh)),
+            "own": own_table(parts["fresh"], own),
         }
     )
 
@@ -257,3 +258,26 @@ def hits_table(mapped: LawMap, fresh: Sequence[MappedPoint]) -> str:
     share = f"{100 * met / tried:.0f} %" if tried else "–"
     rows.append(["all", "", f"{met} of {tried}, {share}", ""])
     return table(["law", "band: times, divided by", "held in", "found over expected"], rows)
+
+
+def own_table(records: Sequence[Record], own: Mapping[str, Mapping[str, float]]) -> str:
+    """Change of `direct` with half the step and half the cells: median and largest, by loss of contact."""
+    rows = []
+    for words, kind, least, most in (
+        ("wheels", WHEEL, 0.0, 1.0),
+        ("balls, contact lost for less than 1 % of the time", BALL, 0.0, 0.01),
+        ("balls, lost for 1 to 10 %", BALL, 0.01, 0.1),
+        ("balls, lost for longer", BALL, 0.1, 1.0),
+    ):
+        changes = []
+        for record in records:
+            name = Point(**record["point"]).name
+            loss = np.mean([path["laws"]["direct"]["loss"] for path in record["paths"]])
+            if name in own and record["point"]["kind"] == kind and least <= loss < most:
+                changes.append(own[name])
+        row = [words, str(len(changes))]
+        for part in ("step", "grid"):
+            values = [change[part] for change in changes]
+            row.append(f"{np.median(values):.2g} ({max(values):.2g})")
+        rows.append(row)
+    return table(["contact", "cases", "half the step", "half the cells"], rows)

@@ -177,23 +177,28 @@ def solved(
     return found
 
 
+def band_energies(
+    contact_force: NDArray[np.float64], time_step: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Centres of the one-third octaves of the map, Hz, and in each the mean square of a force, N²."""
+    segment = round(SEGMENT / time_step)
+    centres, levels = band_levels(*psd(contact_force, time_step, segment=segment), low=LOW, high=HIGH)
+    return centres, 10.0 ** (levels / 10.0)
+
+
 def rolled(case: Case, direct: Mapping[str, NDArray[Any]], progress: Progress) -> dict[str, Any]:
     """Roll one path with all laws of a case, and keep what the map needs of it."""
     computed, step, kept = computed_of(case, progress), case.time_step, {}
     reference, built = direct["force"], {name: computed.build(name) for name in computed.runs}
-
-    def energies(contact_force: NDArray[np.float64]) -> list[NDArray[np.float64]]:
-        return list(band_levels(*psd(contact_force, step, segment=round(SEGMENT / step)), low=LOW, high=HIGH))
-
-    centres, levels = energies(reference)
+    centres, energy = band_energies(reference, step)
     kept["direct"] = {"mean": float(reference.mean())} | {
         name: float(direct[name]) for name in ("loss", "seconds", "unconverged")
     }
-    kept["direct"]["energy"] = (10.0 ** (levels / 10.0)).tolist()
+    kept["direct"]["energy"] = energy.tolist()
     for name, run in computed.runs.items():
         course = force(built[name], direct["position"], direct["displacement"])
         kept[name] = {
-            "energy": (10.0 ** (energies(run.contact_force[0])[1] / 10.0)).tolist(),
+            "energy": band_energies(run.contact_force[0], step)[1].tolist(),
             "mean": float(run.contact_force.mean()),
             "loss": 1.0 - float(run.in_contact.mean()),
             "course": float(np.sqrt(np.mean((course - reference) ** 2)) / reference.std()),
@@ -223,17 +228,20 @@ def own_error(point: Point, first_seed: int, folder: Path, progress: Progress) -
     }
     levels = {}
     for name, grid in ways.items():
-        energy = 0.0
-        for number in range(point.seeds):
-            run = solved(point, first_seed + number, folder / name, progress, **grid)
-            time_step = case_of(point, first_seed + number, ["direct"], **grid).time_step
-            segment = round(SEGMENT / time_step)
-            bands = band_levels(*psd(run["force"], time_step, segment=segment), low=LOW, high=HIGH)[1]
-            energy = energy + 10.0 ** (bands / 10.0)
-        levels[name] = 10.0 * np.log10(energy)
+        time_step = case_of(point, first_seed, ["direct"], **grid).time_step
+        paths = [
+            solved(point, first_seed + number, folder / name, progress, **grid)
+            for number in range(point.seeds)
+        ]
+        energies = [band_energies(path["force"], time_step)[1] for path in paths]
+        levels[name] = 10.0 * np.log10(np.mean(energies, axis=0))
+
+    def change(finer: str, coarser: str) -> float:
+        return float(np.sqrt(np.mean((levels[finer] - levels[coarser]) ** 2)))
+
     return {
-        "step": float(np.sqrt(np.mean((levels["direct_half_step"] - levels["direct"]) ** 2))),
-        "grid": float(np.sqrt(np.mean((levels["direct_fine"] - levels["direct_half_step"]) ** 2))),
+        "step": change("direct_half_step", "direct"),
+        "grid": change("direct_fine", "direct_half_step"),
     }
 
 
