@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray
 from click.testing import CliRunner
 
 import asperity
@@ -23,9 +24,12 @@ from asperity.case.form import case_key
 from asperity.cli import main
 from asperity.errors import CaseError
 from asperity.extensions import ExtensionWarning
+from asperity.scenes.observer import Observer
 from asperity.scenes.report import names_of_reports
+from asperity.schema import Attribute, Entry
 from asperity.serving import case_form
 from asperity.structures.modal import modal_receptance
+from refusals import refusals
 from small_cases import ON_BEAM
 
 LAB = Path(__file__).with_name("our_lab")
@@ -181,14 +185,18 @@ def test_members_of_a_study_know_it_in_processes_of_their_own(lab):
 BROKEN = {
     "asperity.laws": {
         "lost": "broken_lab:LAW",
-        "named": "broken_lab.things:LAW",
+        "named": "broken_lab.things:ANOTHER",
         "areal": "broken_lab.things:AREAL",
         "angry": "angry_lab.law:LAW",
     },
     "asperity.readers": {"words": "broken_lab.things:TEXT", "number": "broken_lab.things:NUMBER"},
     "asperity.structures": {"track": "broken_lab.things:NUMBER", "deck": "broken_lab.gone:Deck"},
     "asperity.kinds": {"bodies": "broken_lab.things:KIND", "skates": "broken_lab.gone:Skates"},
-    "asperity.observers": {"heard": "broken_lab.things:FAILS", "rolling": "broken_lab.things:TAKEN"},
+    "asperity.observers": {
+        "heard": "broken_lab.things:FAILS",
+        "rolling": "broken_lab.things:TAKEN",
+        "turned": "broken_lab.things:TURNED",
+    },
     "asperity.chapters": {"late": "broken_lab.things:LATE"},
 }
 THINGS = """
@@ -198,7 +206,7 @@ from asperity.schema import Entry
 from asperity.surfaces.readers import SurfaceFormat
 
 NUMBER = 3
-LAW = LawSpec("another", "A law.", lambda materials: None)
+ANOTHER = LawSpec("another", "A law.", lambda materials: None)
 AREAL = LawSpec("areal", "A law.", lambda materials: None)
 TEXT = SurfaceFormat("words", lambda path, hints: [], (".txt",))
 
@@ -211,8 +219,15 @@ def observe(computed):
     raise ZeroDivisionError("nothing to divide by")
 
 
-FAILS = Observer("heard", (Entry("heard", "level()", "dB re 1 N", "level"),), observe)
-TAKEN = Observer("rolling", (Entry("rolling", "level()", "dB re 1 N", "level"),), observe)
+FAILS = Observer("heard", (Entry("heard", "level(law)", "dB re 1 N", "level"),), observe)
+TAKEN = Observer("rolling", (Entry("rolling", "level(law)", "dB re 1 N", "level"),), observe)
+FORCE = Entry("turned", "force(time, law)", "N", "a force, its dimensions in the wrong order")
+LAW = Entry("turned", "law", "1", "contact law")
+TURNED = Observer(
+    "turned",
+    (FORCE, LAW),
+    lambda computed: {FORCE: computed.stacked("contact_force")[:, 0], LAW: list(computed.runs)},
+)
 """
 MESSAGES = {
     laws.names: [
@@ -286,7 +301,84 @@ def test_an_observer_that_fails_does_not_lose_the_run(broken):
         for each in said
     )
     assert any("group of the observer: received rolling" in each for each in said)
-    assert "heard" not in result.children
+    steps = result["rolling"].sizes["time"]
+    assert any(
+        f"force(time, law) of observer turned: received the shape (1, {steps}); "
+        "allowed: dimensions (time: any size, law: 1). It is left out." in each
+        for each in said
+    )
+    assert not {"heard", "turned"} & set(result.children)
+
+
+def looked_at(found):
+    """Values of an observer that lays out two dimensions, a text and numbers in JSON."""
+    return Observer("own", (LAW, TIME, LEVEL, WORDS, NUMBERS), lambda computed: found).values(None)
+
+
+LAW, TIME = Entry("own", "law", "1", "contact law"), Entry("own", "time", "s", "time")
+LEVEL = Entry("own", "level(law, time)", "dB re 1 N", "level")
+WORDS, NUMBERS = Attribute("own", "words", "text", "said"), Attribute("own", "numbers", "JSON", "counted")
+OF_OWN = "of observer own: received"
+test_values_fit_what_an_observer_declares = refusals(
+    (
+        {LAW: ["a"], LEVEL: [1.0]},
+        f"level(law, time) {OF_OWN} the shape (1,); allowed: dimensions (law, time)",
+    ),
+    (
+        {LEVEL: [[1.0, 2.0]], LAW: ["a", "b"]},  # what is laid out first makes no difference
+        f"level(law, time) {OF_OWN} the shape (1, 2); allowed: dimensions (law: 2, time: any size)",
+    ),
+    (
+        {LAW: ["a"], TIME: [0.0, 1.0, 2.0], LEVEL: [[1.0, 2.0]]},
+        "the shape (1, 2); allowed: dimensions (law: 1, time: 3)",
+    ),
+    (
+        {LEVEL: xarray.Variable(("time", "law"), [[1.0]])},
+        f"level(law, time) {OF_OWN} dimensions (time, law); allowed: dimensions (law, time)",
+    ),
+    ({LEVEL: [[1.0], [1.0, 2.0]]}, f"level(law, time) {OF_OWN} a failure, ValueError"),
+    ({LEVEL: [[1j]]}, f"level(law, time) {OF_OWN} values of complex128; allowed: real numbers, or texts"),
+    ({LEVEL: [[None]]}, f"level(law, time) {OF_OWN} values of object"),
+    ({WORDS: {"a": 1}}, f"words {OF_OWN} values of object"),
+    ({WORDS: [[1.0]]}, f"words {OF_OWN} an array of float64"),
+    ({NUMBERS: {1j}}, f"numbers {OF_OWN} a failure, TypeError"),
+    (None, "observer own: received None; allowed: values by its entries, as a dict"),
+    of=looked_at,
+)
+
+
+def test_what_fits_is_laid_out_with_what_is_said_of_it():
+    laid_out = looked_at(
+        {
+            LEVEL: xarray.Variable(LEVEL.dims, [[1.0]], {"least": 2}),
+            LAW: np.array(["a"], object),
+            NUMBERS: [1],
+        }
+    )
+    assert laid_out[LEVEL].attrs == {"units": "dB re 1 N", "long_name": "level", "least": 2}
+    assert laid_out[LAW].values == ["a"]
+    assert laid_out[NUMBERS] == [1]
+
+
+test_declarations_are_looked_at = refusals(
+    (
+        lambda: Entry("own", "level()", "1", "level"),
+        "received 'level()'; allowed: a name, or a name with its",
+    ),
+    (
+        lambda: Entry("own", "level(law,time)", "1", "level"),
+        r"contact, time\).\. What has no dim",
+    ),
+    (lambda: Entry("own", "level(law, law)", "1", "level"), "entry of the group own"),
+    (
+        lambda: Observer("a/b", (LEVEL,), dict),
+        "name of an observer: received 'a/b'; allowed: letters, digits",
+    ),
+    (
+        lambda: Observer("own", (LEVEL,), dict, sources="ISO 281"),
+        "sources of observer own: received 'ISO 281'",
+    ),
+)
 
 
 def test_a_command_names_what_fails_in_a_line_and_goes_on(broken):

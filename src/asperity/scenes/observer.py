@@ -1,9 +1,14 @@
 """What a package beside this one looks at in a run: entries of the result, and a function that finds them."""
 
+import json
+import re
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
+
+import numpy as np
+import xarray
 
 from asperity import extensions
 from asperity.arguments import require, shown
@@ -49,8 +54,12 @@ class Observer:
 
     def __post_init__(self) -> None:
         what = f"observer {self.name}"
+        word = isinstance(self.name, str) and re.fullmatch(r"\w+", self.name)
+        require(word, "name of an observer", shown(self.name), "letters, digits and underscores")
         for function in (self.observe, self.asked_of):
             require(callable(function), what, shown(function), "a function of what was computed")
+        cited = not isinstance(self.sources, str) and all(isinstance(each, str) for each in self.sources)
+        require(cited, f"sources of {what}", shown(self.sources), "a list of texts")
         elsewhere = sorted({each.group for each in self.entries if each.group != self.name})
         require(self.entries, what, "no entry", "what it lays out, as asperity.schema.Entry")
         allowed = f'entries of the group "{self.name}"'
@@ -63,9 +72,51 @@ class Observer:
         except Exception as error:  # the run is not lost for it
             received = f"a failure, {reason(error)}"
             raise InputError(f"observer {self.name}", received, "values of its entries") from error
+        what = f"observer {self.name}"
+        require(isinstance(found, Mapping), what, shown(found), "values by its entries, as a dict")
         strange = [shown(each) for each in found if each not in self.entries]
-        require(not strange, f"observer {self.name}", ", ".join(strange), "entries that it declares")
-        return found
+        require(not strange, what, ", ".join(strange), "entries that it declares")
+        return _fitting(what, found)
+
+
+def _fitting(observer: str, found: Mapping[Entry | Attribute, Any]) -> Values:
+    """Make what an observer found ready to be written, or say by an `InputError` what does not fit."""
+    made = {item: _written(item, value, observer) for item, value in found.items()}
+    variables = {item: value for item, value in made.items() if isinstance(item, Entry)}
+    sizes: dict[str, int] = {}
+    for entry in sorted(variables, key=lambda item: item.place != item.name):  # coordinates first
+        shape = variables[entry].shape
+        allowed = ", ".join(f"{name}: {sizes.get(name, 'any size')}" for name in entry.dims)
+        fits = all(sizes.setdefault(*each) == each[1] for each in zip(entry.dims, shape, strict=True))
+        require(fits, f"{entry.place} of {observer}", f"the shape {shape}", f"dimensions ({allowed})")
+    return made
+
+
+def _written(item: Entry | Attribute, value: Any, observer: str) -> Any:
+    """Make one value as a result file holds it."""
+    what = f"{item.place if isinstance(item, Entry) else item.name} of {observer}"
+    try:
+        if isinstance(item, Attribute) and item.units == "JSON":
+            json.dumps(value)
+            return value
+        values = np.asarray(value)
+    except (TypeError, ValueError) as error:  # of what JSON does not know; of lists of unequal lengths
+        raise InputError(what, f"a failure, {reason(error)}", "one array, or what JSON holds") from error
+    words = values.dtype.kind == "U" or (values.dtype.kind == "O" and _are_words(values))
+    require(words or values.dtype.kind in "biuf", what, f"values of {values.dtype}", "real numbers, or texts")
+    if isinstance(item, Attribute):
+        require(values.ndim < 2, what, shown(values), "one number or text, or a list of them")
+        return value
+    made = isinstance(value, xarray.Variable | xarray.DataArray)
+    names = value.dims if made else item.dims
+    received = f"dimensions ({', '.join(map(str, names))})" if made else f"the shape {values.shape}"
+    fits = values.ndim == len(item.dims) and tuple(names) == item.dims
+    require(fits, what, received, f"dimensions ({', '.join(item.dims)})")
+    return item.variable(values, **(value.attrs if made else {}))
+
+
+def _are_words(values: np.ndarray[Any, Any]) -> bool:
+    return all(isinstance(each, str) for each in values.flat)
 
 
 def observers() -> dict[str, Observer]:

@@ -5,11 +5,12 @@ One module per group holds what all kinds of case share; what depends on the sce
 """
 
 import json
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from asperity.errors import Grade, PhysicsWarning
+from asperity.errors import Grade, InputError, PhysicsWarning
 
 if TYPE_CHECKING:
     import xarray
@@ -18,6 +19,9 @@ if TYPE_CHECKING:
 VERSION = 3
 """Of the schema, in every result. Raise it where a name, dimension, unit or meaning changes or goes."""
 UNKNOWN = "no reason is known"
+_PLACE = re.compile(r"\w+(\(\w+(, \w+)*\))?")
+_PLACES = 'a name, or a name with its dimensions, as "force" or "force(law, contact, time)"'
+_NUMBER = "What has no dimension is an asperity.schema.Attribute."
 
 
 @dataclass(frozen=True)
@@ -33,6 +37,10 @@ class Entry:
     condition: str = ""  # which results have it, where not all have
     missing: str = ""  # why values may be missing (NaN)
     attributes: tuple[str, ...] = ()  # what else is said of it
+
+    def __post_init__(self) -> None:
+        if not _PLACE.fullmatch(self.place) or len(set(self.dims)) < len(self.dims):
+            raise InputError(f"entry of the group {self.group}", repr(self.place), _PLACES, _NUMBER)
 
     @property
     def name(self) -> str:
