@@ -10,7 +10,8 @@ import pytest
 import asperity
 from asperity.case.cases import as_case, parse_case, template
 from asperity.errors import CaseError, InputError
-from asperity.scenes.bearing import bearing_rings, expected, prepare_bearing
+from asperity.scenarios.prepared_bearing import expected, prepare_bearing
+from asperity.scenes.computed_bearing import bearing_rings
 from asperity.structures.modal import ModalStructure
 from asperity.structures.ring import Ring
 from asperity.studies.definition import study_of

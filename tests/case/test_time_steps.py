@@ -11,8 +11,9 @@ from asperity.case.cases import as_case
 from asperity.case.time_steps import longest_step
 from asperity.errors import PhysicsWarning
 from asperity.running import prepare_case
+from asperity.scenarios.prepared_bearing import prepare_bearing
 from asperity.scenarios.preparing import doubt_time_step
-from asperity.scenes.bearing import prepare_bearing, rolled
+from asperity.scenes.computed_bearing import compute_bearing
 
 BRIEF = {"settling": "50 ms", "surface": {"smooth": True}, "laws": ["hertz"]}
 ON_RAIL = BRIEF | {"duration": "0.1 s", "contact": {"spacing": "1 mm"}}
@@ -85,7 +86,7 @@ def test_the_default_step_of_a_bearing_follows_light_rings_and_their_modes(rings
     case = heavy.with_(**rings)
     assert case.step < heavy.step
     with PhysicsWarning.caught() as caught:
-        rolled(prepare_bearing(case), lambda *done: None)
+        compute_bearing(prepare_bearing(case), lambda *done: None)
     assert not [each for each in caught if any(words in str(each.message) for words in DOUBT)]
 
 

@@ -16,17 +16,10 @@ from asperity.parameters import Number, key
 from asperity.reference.materials import MATERIALS
 from asperity.running import prepare_case
 from asperity.scenarios import raceway_laws, run_time, scanned_states
-from asperity.scenes.bearing import (
-    CELL_TIME,
-    bearing_rings,
-    cage_slip,
-    expected,
-    heard_group,
-    prepare_bearing,
-    rolled,
-    thinned,
-)
+from asperity.scenarios.prepared_bearing import CELL_TIME, expected, prepare_bearing
+from asperity.scenes.bearing import heard_group
 from asperity.scenes.bearing_validity import out_of_place
+from asperity.scenes.computed_bearing import bearing_rings, cage_slip, compute_bearing, thinned
 from asperity.scenes.figures.bearing import load_zone
 from asperity.schema import bearing as schema
 from asperity.schema import spectra
@@ -262,7 +255,7 @@ def test_direct_rolls_balls_as_their_average_where_waves_are_long(monkeypatch):
         directions.append(forwards)
         return made(*given, forwards=forwards, **keys)
 
-    monkeypatch.setattr("asperity.scenes.bearing.laws_on", seen)
+    monkeypatch.setattr("asperity.scenes.computed_bearing.laws_on", seen)
     monkeypatch.setattr(raceway_laws, "CELLS", (3, 4))
     tree = asperity.run(case, brief=True)
     assert directions == [False, True]  # balls run forwards on the ring that stands still
@@ -299,7 +292,7 @@ def test_forces_that_leave_the_states_scanned_have_more_scanned_and_are_those_of
     )
     for shares in ((0.0, 1e9), (0.2, 0.3)):
         monkeypatch.setattr(scanned_states, "EXPECTED", shares)
-        found += rolled(prepared, lambda *_: None).values()
+        found += compute_bearing(prepared, lambda *_: None).runs.values()
     whole, *_ = ends
     first, last = ends[4], ends[-2]
     assert first < last < whole
@@ -417,7 +410,7 @@ def test_direct_in_a_bearing_that_was_stopped_goes_on_to_the_last_bit(monkeypatc
                 if done >= stop:
                     raise KeyboardInterrupt
 
-        return rolled(prepared, progress)["direct"]
+        return compute_bearing(prepared, progress).runs["direct"]
 
     monkeypatch.setenv("ASPERITY_CACHE", str(tmp_path / "whole"))
     whole = rolling(math.inf)

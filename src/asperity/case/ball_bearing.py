@@ -260,7 +260,7 @@ class BearingUnderLoad(AnyCase):
 
     TITLE = "A ball bearing runs under a load."
     NEEDED = "a bearing and its load"
-    PREPARED_BY = "asperity.scenes.bearing.prepare_bearing"
+    PREPARED_BY = "asperity.scenarios.prepared_bearing.prepare_bearing"
     COMPUTED_BY = "asperity.scenes.bearing.bearing_result"
     REFINED_BY = "asperity.scenes.bearing_refining.settings_of_bearing"
     PRESSED_BY = "asperity.serving.contact_preview.raceway_surface"

@@ -378,7 +378,7 @@ def planned(prepared: ReadyCase) -> dict[str, Any]:
             faults = [] if work.tried is None else foreseen(prepared, work.tried, choice)
         met += planning
     else:
-        from asperity.scenes.bearing import PreparedBearing, expected
+        from asperity.scenarios.prepared_bearing import PreparedBearing, expected
 
         assert isinstance(prepared, PreparedBearing)
         rows, work = expected(prepared)

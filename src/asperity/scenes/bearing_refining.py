@@ -3,8 +3,8 @@
 from xarray import DataTree
 
 from asperity.case.ball_bearing import BearingUnderLoad
+from asperity.scenarios.prepared_bearing import PreparedBearing
 from asperity.scenarios.refining import Setting, Way
-from asperity.scenes.bearing import PreparedBearing
 from asperity.schema.convergence import PATH_LENGTH
 from asperity.units import written
 from asperity.written_numbers import rounded

@@ -16,10 +16,10 @@ from asperity.errors import CaseError, InputError
 from asperity.reduction.stiffness import patches
 from asperity.reduction.texture import punch_weights
 from asperity.scenarios.geometry import Geometry
+from asperity.scenarios.prepared_bearing import prepare_bearing, raceways_of
 from asperity.scenarios.preparing import prepare
 from asperity.scenarios.scene import PreparedCase
 from asperity.scenarios.textures import strip_rows
-from asperity.scenes.bearing import prepare_bearing, raceways_of
 from asperity.written_numbers import rounded
 
 MOST_CELLS_SHOWN = 129

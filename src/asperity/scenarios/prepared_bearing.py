@@ -1,0 +1,189 @@
+"""A ball bearing laid ready: what is on its parts, what its balls roll over, and what is to be computed."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from asperity.case.ball_bearing import AroundKeys, BearingUnderLoad
+from asperity.errors import InputError, PhysicsWarning
+from asperity.laws import Need, spec_of
+from asperity.progress import Progress
+from asperity.scenarios import compiling, preparing, reducing, run_time
+from asperity.scenarios.doubts import doubt_bearing
+from asperity.scenarios.problems import refuse
+from asperity.scenarios.raceway_laws import OnRaceway, raceway_on
+from asperity.scenarios.raceway_limits import doubt_fault, doubt_surface
+from asperity.store import Store
+from asperity.structures.ball_bearing import PARTS
+from asperity.structures.bearing_statics import doubt_speed
+from asperity.surfaces.raceway import Raceway
+from asperity.written_numbers import in_newtons, rounded
+
+RINGS = ("inner", "outer")
+NAMES = {"outer": "outer raceway", "inner": "inner raceway", "ball": "balls"}
+ON = {
+    "inner_raceway": "the inner raceway",
+    "outer_raceway": "the outer raceway",
+    "balls": "the balls",
+    "fault": "the fault",
+}
+"""Sections of a case that say what is on a part."""
+LEFT_OUT = (
+    "There is no film of lubricant, no friction, no shoulder of a groove, and no tilt of a ring; the contact "
+    "angle is that of the static load."
+)
+STEP_TIME, SOLUTION_TIME = 2.0e-6, 1e-3
+"""Processor times of a step of one ball with its record and spectra, and of a contact of a scan, s."""
+CELL_TIME = 3.5e-8
+"""Time of a contact under a load over a fault, for each of its cells, s."""
+SEEDS = 1000
+"""Seeds of the parts of a bearing lie beside each other, and no two bearings share any."""
+
+
+@dataclass(frozen=True, eq=False)
+class PreparedBearing:
+    """A case of a bearing that can be computed."""
+
+    case: BearingUnderLoad
+    raceways: tuple[Raceway, Raceway]  # inner and outer one
+    balls: tuple[Raceway, ...]  # their surfaces; none where all are smooth
+    caught: tuple[warnings.WarningMessage, ...]  # warnings met on the way
+
+
+def bearing_parts(case: BearingUnderLoad) -> list[tuple[str, Any, float]]:
+    """Names of inner and outer raceway and of balls, their sections, and their radii, m."""
+    of = case.bearing.bearing
+    return [
+        ("inner", case.inner_raceway, of.raceway_radii[0]),
+        ("outer", case.outer_raceway, of.raceway_radii[1]),
+        ("ball", case.balls, 0.5 * of.ball_diameter),
+    ]
+
+
+def prepare_bearing(case: BearingUnderLoad, source: str = "case") -> PreparedBearing:
+    """Load the bearing at rest and lay out what is on its parts; refuse what cannot be."""
+    errors = list[InputError]()
+    made = list[Raceway]()
+    of = case.bearing.bearing
+    *parts, balls = bearing_parts(case)
+    parts += [balls] * of.balls * (not case.has_smooth_balls)
+    with PhysicsWarning.caught() as caught:
+        case.loaded()
+        doubt_speed(of, case.speed)
+        doubt_bearing(case)
+        for number, (name, keys, radius) in enumerate(parts):
+            contact, load = case.contacts[min(number, 1)]  # of balls those with the outer ring
+            on_it = (each for each in case.faults.values() if each.lies_on(name, number - 1))
+            faults = [each.fault for each in on_it if each.fault]
+            seed = SEEDS * case.seed + number
+            try:
+                made.append(raceway_on(contact, load, radius, keys.texture(), faults, seed=seed))
+                doubt_surface(made[-1], contact.approach(load))
+            except InputError as error:
+                errors.append(_by_key(case, name, keys, error))
+            apart = 2.0 * np.pi * radius / of.balls
+            for fault in faults if name != "ball" else ():
+                doubt_fault(fault, apart, NAMES[name])
+    refuse(errors, source)
+    return PreparedBearing(case, (made[0], made[1]), tuple(made[2:]), tuple(caught))
+
+
+def _by_key(case: BearingUnderLoad, part: str, keys: AroundKeys, error: InputError) -> InputError:
+    """An error about what is on a part, by the key of the case that it is about."""
+    section = "balls" if part == "ball" else f"{part}_raceway"
+    what, _, of = error.what.partition(" of the fault")
+    if of:
+        damaged = (name for name, each in case.faults.items() if each.on == part)
+        return error.about(f"{next(damaged, 'fault')}.{what}")
+    heights = ("waviness", "amplitudes", "trace", "roughness", "map")
+    sources = {"rms slope": heights[::-1], "waves per turn": ("last_order", "waves")}
+    given = (name for name in (error.what, *sources.get(error.what, heights)) if name in keys.given_names)
+    told = error.received if error.what in keys.keys else f"{error.received} ({error.what})"
+    return error.about(f"{section}.{next(given, 'waviness')}", told)
+
+
+def raceways_of(prepared: PreparedBearing, progress: Progress | None) -> list[OnRaceway]:
+    """What a ball feels of the inner and the outer raceway, and their scans."""
+    case = prepared.case
+    of = prepared.case.bearing.bearing
+    turning = prepared.case.kinematics
+    passing = [2.0 * np.pi * abs(turning.cage - ring) for ring in (turning.inner, turning.outer)]
+    each = zip(case.contacts, prepared.raceways, of.raceway_radii, passing, strict=True)
+    return [
+        OnRaceway(
+            smooth, surface, load, case.contact_damping, of.hardness, cache=Store(), progress=progress,
+            shortest=radius * pace / case.highest_frequency,
+            parameters={law: case.law_parameters(law) for law in case.laws},
+        )
+        for (smooth, load), surface, radius, pace in each
+    ]  # fmt: skip
+
+
+def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], preparing.Work]:
+    """What will be computed, in words, and how much work it is; coarsely, as nothing is solved for that."""
+    case = prepared.case
+    turning = prepared.case.kinematics
+    found = prepared.case.static
+    steps = round((case.settling + case.duration) / case.step)
+    textured = sum(bool(getattr(case, key).given()) for key in ON)
+    runs = len(case.laws) + textured + (textured > 0)
+    solutions = {}
+    for name, on in zip(RINGS, raceways_of(prepared, progress=None), strict=True):
+        rough = np.count_nonzero((on.surface.heights + on.surface.faults).any(axis=1))
+        if rough and any(Need.SCAN in spec_of(law).needs for law in case.laws):
+            positions = math.ceil(int(rough) / on.scanned_stride)
+            solutions[f"scan of the {NAMES[name]}"] = positions * reducing.STATES
+    for law in (law for law in case.laws if spec_of(law).solved_every_step):
+        solutions[law] = steps * int(found.touching.max() + found.bearing.balls)
+    rolled_once = STEP_TIME * steps * found.bearing.balls
+    parts = {
+        "start and report": run_time.START,
+        "each part alone": rolled_once * (runs - len(case.laws)),
+    }
+    parts |= {f"the law {law}": run_time.LAW + rolled_once for law in case.laws}
+    for name, count in solutions.items():
+        part = f"the law {name}" if f"the law {name}" in parts else f"the {name}"
+        parts[part] = parts.get(part, 0.0) + SOLUTION_TIME * count
+    parts["contacts over the faults"] = CELL_TIME * _cells_over_faults(prepared)
+    pace = run_time.pace()
+    taken = run_time.RunTime({part: pace * seconds for part, seconds in parts.items()})
+    tones = ", ".join(f"{NAMES[part]} {rounded(turning.tone(part), 4)} Hz" for part in PARTS)
+    load, angle = max(load for _, load in case.contacts), np.degrees(found.contact_angle)
+    touching, at_rest = (each.static.touching for each in (case, case.with_(centrifugal=False)))
+    held = f"{rounded(touching.mean())} of {found.bearing.balls} on average, {touching.min():.0f} or more"
+    rows = [
+        ("heaviest load of a ball", f"{in_newtons(load)}, contact angle {rounded(angle)}°"),
+        ("balls that touch both rings", f"{held}; at rest {rounded(at_rest.mean())}"),
+        ("tones", f"{tones}; cage {rounded(turning.cage, 4)} Hz"),
+        (
+            "time",
+            f"{steps} steps of {rounded(case.step * 1e6, 4)} µs, {case.settling:g} s of them "
+            "before the record",
+        ),
+        ("runs", f"{', '.join(case.laws)}, and {runs - len(case.laws)} by areal with parts alone"),
+        *((f"contact solutions, {name}", f"at most {count}") for name, count in solutions.items()),
+        ("not in it", LEFT_OUT),
+    ]
+    if case.rotating:
+        rows.insert(1, ("load that turns", f"{in_newtons(case.rotating)}, once in {1e3 / case.speed:.4g} ms"))
+    return rows, preparing.Work({}, solutions, steps, None, taken, pace * compiling.time_to_compile())
+
+
+def _cells_over_faults(prepared: PreparedBearing) -> float:
+    """Cells of all contacts that are solved over faults: by the laws, and with the faults alone.
+
+    A law that solves every step asks for none on a ring.
+    """
+    case = prepared.case
+    found = 0.0
+    by_height = any(not spec_of(law).solved_every_step for law in case.laws)
+    for number, surface in enumerate((*prepared.raceways, *prepared.balls)):
+        contact, load = case.contacts[min(number, 1)]
+        times = 2 if by_height or number >= len(RINGS) else 1
+        found += times * OnRaceway(contact, surface, load).cells_over_faults
+    return found

@@ -1,0 +1,147 @@
+"""A ball bearing is run by each of its laws: what of it was recorded."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from asperity.arguments import Array
+from asperity.case.ball_bearing import BearingUnderLoad
+from asperity.errors import PhysicsWarning
+from asperity.laws import Need, spec_of
+from asperity.progress import Progress
+from asperity.rolling.bearing import BearingRings, RolledBearing, Sensor, roll_bearing
+from asperity.scenarios.prepared_bearing import RINGS, PreparedBearing, raceways_of
+from asperity.scenarios.raceway_laws import OnRaceway, ball_heights, laws_on
+from asperity.scenes.compute import checkpoint_of
+from asperity.store import Store
+from asperity.structures.ball_bearing import BallBearing
+from asperity.structures.ring import Ring
+
+DAMPED = 0.05
+"""Share by which the force of a contact that is looked up may lie beside what its damping leaves of it."""
+TRIED = 0.1
+"""Share of the record after which it is asked first whether forces leave what was scanned."""
+FORCES = ("inner_force", "outer_force")
+"""They begin and end at once, where the filter rings: none is written that is below all that were found."""
+SIGNALS = (*FORCES, "ball_motion", "inner_motion", "outer_motion", "acceleration")
+"""What a run holds over time, beside what grows evenly."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ComputedBearing(PreparedBearing):
+    """A bearing that was run by its laws, before it is laid out as a result."""
+
+    runs: dict[str, RolledBearing]  # records, by law, at the sampling rate of the case
+
+    @property
+    def bearing(self) -> BallBearing:
+        """Geometry of the bearing, and its speeds."""
+        return self.case.bearing.bearing
+
+    def stacked(self, name: str) -> Array:
+        """Stack one record of all runs, (laws, balls, directions or sensors, ...), by its attribute."""
+        return np.stack([getattr(run, name) for run in self.runs.values()])
+
+
+def compute_bearing(prepared: PreparedBearing, progress: Progress) -> ComputedBearing:
+    """Run the bearing by each law, at the sampling rate of the case."""
+    case, of, ons = prepared.case, prepared.case.bearing.bearing, raceways_of(prepared, progress)
+    looked_up = {name for name in case.laws if Need.SCAN in spec_of(name).needs}
+    others = [name for name in case.laws if name not in looked_up]
+    laws_of = [  # balls run forwards on the ring that stands still
+        laws_on(on, others, balls=prepared.balls, forwards=ring != of.turning)
+        for ring, on in zip(RINGS, ons, strict=True)
+    ]
+    smooth, load = case.contacts[1]
+    averaged = [ball_heights(smooth, surface, load) for surface in prepared.balls]
+    sensors: list[Sensor] = [("outer", angle, "radial") for angle in case.sensors]
+
+    def surfaces() -> list[Array]:
+        every = (*prepared.raceways, *prepared.balls)
+        return [heights for each in every for heights in (each.heights, each.line, each.faults)]
+
+    def once(law: str, inner: Any, outer: Any, duration: float = case.duration) -> RolledBearing:
+        return roll_bearing(
+            of, bearing_rings(case), inner, outer,
+            speed=case.speed, radial=case.radial, axial=case.axial, rotating=case.rotating,
+            duration=duration, time_step=case.step, settling=case.settling, slip=cage_slip(case),
+            ball_heights=[] if isinstance(inner, list) else averaged,
+            centrifugal=case.centrifugal, sensors=sensors,
+            highest_frequency=case.highest_frequency, progress=progress,
+            checkpoint=checkpoint_of(law, case, surfaces, Store()),
+        )  # fmt: skip
+
+    found = {}
+    for name in case.laws:
+        if name in looked_up:
+            run = _within_scan(case, name, ons, once)
+        else:
+            run = once(name, *(of[name] for of in laws_of))
+        every = case.steps_per_sample
+        signals: dict[str, Any] = {each: thinned(getattr(run, each), every) for each in SIGNALS}
+        signals |= {each: np.maximum(signals[each], getattr(run, each).min()) for each in FORCES}
+        found[name] = replace(run, time=run.time[::every], cage=run.cage[::every], **signals)
+    return ComputedBearing(**vars(prepared), runs=found)
+
+
+def _within_scan(
+    case: BearingUnderLoad,
+    law: str,
+    ons: Sequence[OnRaceway],
+    once: Callable[[str, Any, Any, float], RolledBearing],
+) -> RolledBearing:
+    """Run by a law in the states expected; where forces leave what was scanned, scan more and run anew."""
+    loads = case.static.inner_load, case.static.outer_load
+    states = [on.states_under(each.min(), each.max()) for on, each in zip(ons, loads, strict=True)]
+    duration = max(TRIED * case.duration, case.step)
+    while True:
+        with PhysicsWarning.caught() as caught:
+            inner, outer = (on.build(law, each) for on, each in zip(ons, states, strict=True))
+            run = once(law, inner, outer, duration)
+        wider = [
+            on.wider(each, (1.0 - DAMPED) * least, (1.0 + DAMPED) * most)
+            for on, each, (least, most) in zip(ons, states, run.reached, strict=True)
+        ]
+        if wider == states and duration == case.duration:
+            break
+        states = wider
+        duration = case.duration
+    for each in caught:
+        warnings.warn(each.message, stacklevel=2)
+    return run
+
+
+def bearing_rings(case: BearingUnderLoad) -> BearingRings:
+    """Both rings with what they carry, on what holds them; they bend if the case says so."""
+    angle = case.static.contact_angle
+    inner, held = (
+        Ring.rigid(
+            keys.mass, angle, radial_stiffness=keys.radial_stiffness, axial_stiffness=keys.axial_stiffness,
+            damping_ratio=keys.damping_ratio
+        )
+        for keys in (case.shaft, case.housing)
+    )  # fmt: skip
+    return BearingRings(inner, held, *case.bending_rings())
+
+
+def cage_slip(case: BearingUnderLoad) -> Callable[[Array], Array]:
+    """Slip of the cage at times (n,), s, drawn anew for each of its turns, and straight between these."""
+    least, most = case.cage_slip
+    rate = case.kinematics.cage
+    turns = int(rate * (case.settling + case.duration)) + 3
+    drawn = np.random.default_rng([case.seed, 7]).uniform(least, most, turns)
+    return lambda at: np.interp((at + case.settling) * rate + 1.0, np.arange(turns), drawn)
+
+
+def thinned(signal: Array, every: int) -> Array:
+    """A signal (…, n) at one of so many samples, without what the fewer samples do not hold."""
+    if every == 1:
+        return signal
+    from scipy.signal import resample_poly
+
+    return np.asarray(resample_poly(signal, 1, every, axis=-1, padtype="line"))
