@@ -20,7 +20,7 @@ ROOT = Path(__file__).parents[1]
 DATA = ROOT / "src/asperity/reference/law_accuracy.json"
 FRESH = ROOT / "benchmarks/law_accuracy_fresh.json"
 """Cases that are no points of the map: do its bands hold?"""
-PAGE, FIGURE = ROOT / "docs/law_accuracy.md", ROOT / "docs/law_accuracy.png"
+PAGE, FIGURE = ROOT / "docs/evidence/law_accuracy.md", ROOT / "docs/evidence/law_accuracy.png"
 CLAIM = 0.8
 """Share of the cases in which the band shall hold."""
 FEWEST = 20

@@ -1,4 +1,4 @@
-"""Numbers of docs/noise.md: sound power from vibration against CNOSSOS-EU, and the rail's radiation ratio.
+"""Numbers of docs/railway/noise.md: sound power from vibration against CNOSSOS-EU, radiation of the rail.
 
     python benchmarks/noise_against_cnossos.py     # tables, noise.png, noise_wheel.png, noise_rail.png
 

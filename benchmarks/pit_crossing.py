@@ -1,6 +1,6 @@
 """Figure of the front page: the force on a ball as it crosses a pit of a raceway, by contact and by guess.
 
-    python benchmarks/pit_crossing.py     # table, docs/pit_crossing.png
+    python benchmarks/pit_crossing.py     # table, docs/pictures/pit_crossing.png
 
 A 6205 under 100 N: the ball in the middle of the load zone on the outer raceway, across a round pit of
 0.28 mm depth. `table` is the scanned three-dimensional contact; dots are single contacts solved by
@@ -28,7 +28,7 @@ from asperity.scenarios.raceway_laws import Closed, raceway_laws, raceway_on
 from asperity.structures.ring import Ring
 from asperity.surfaces.faults import Fault
 
-FIGURE = Path(__file__).parents[1] / "docs/pit_crossing.png"
+FIGURE = Path(__file__).parents[1] / "docs/pictures/pit_crossing.png"
 BEARING, RADIAL, SPEED = BallBearing.named("6205"), 100.0, 1797 / 60
 CONTACT, RADIUS = BEARING.outer_contact, BEARING.raceway_radii[1]
 LOAD = float(BEARING.loaded(RADIAL).outer_load.max())

@@ -1,9 +1,9 @@
-"""Numbers of docs/real_surfaces.md: measured surfaces from their files to contact and noise.
+"""Numbers of docs/surfaces/real_surfaces.md: measured surfaces from their files to contact and noise.
 
     python benchmarks/real_surfaces.py FOLDER [NAME ...]     # writes NAME.json, and real_surfaces.png
 
-FOLDER holds the measured files, which are no part of the project; docs/real_surfaces.md says whose they are.
-Files that are not there are left out. `al3d` and `plu` need the extra `[readers]`.
+FOLDER holds the measured files, which are no part of the project; docs/surfaces/real_surfaces.md says whose
+they are. Files that are not there are left out. `al3d` and `plu` need the extra `[readers]`.
 """
 
 from __future__ import annotations

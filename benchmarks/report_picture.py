@@ -1,6 +1,6 @@
 """The picture of a report that README and documentation show, of the case in README's first lines.
 
-    python benchmarks/report_picture.py     # docs/report.png and, for dark screens, docs/report_dark.png
+    python benchmarks/report_picture.py     # docs/pictures/report.png and, for dark screens, report_dark.png
 
 It needs Chromium and Playwright (``pip install ".[test]"``).
 """
@@ -19,7 +19,7 @@ from PIL import Image
 from playwright.sync_api import sync_playwright
 
 ROOT = Path(__file__).parents[1]
-PICTURES = {"light": ROOT / "docs/report.png", "dark": ROOT / "docs/report_dark.png"}
+PICTURES = {"light": ROOT / "docs/pictures/report.png", "dark": ROOT / "docs/pictures/report_dark.png"}
 VIEW = {"width": 1000, "height": 1600}
 
 

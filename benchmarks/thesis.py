@@ -1,4 +1,4 @@
-"""Statements of the thesis, measured: one sub-command for each table of docs/against_the_thesis.md.
+"""Statements of the thesis, measured: one sub-command for each table of docs/evidence/against_the_thesis.md.
 
     python benchmarks/thesis.py wheel | ball | states | noise | signs
 

@@ -12,7 +12,7 @@ found here depends on which constant stiffness the linear contact has:
 - k_c = F/r at the working load, 4 dB softer: `printed` without a filter has less force up to 630 Hz and
   about half a dB more above 1.25 kHz, as the thesis says. With the filter the excess is gone.
 
-:doc:`/against_the_thesis` derives both.
+:doc:`/evidence/against_the_thesis` derives both.
 """
 
 import matplotlib.pyplot as plt

@@ -154,11 +154,31 @@ def test_the_tree_holds_no_file_that_something_left_there():
 
 
 def test_every_link_and_picture_of_a_page_leads_somewhere():
-    for page in [*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"), *ROOT.glob("benchmarks/*.md")]:
+    """Generated pages apart, which stand there once the documentation is built."""
+    pages = [page for page in (ROOT / "docs").rglob("*.md") if not {"generated", "_build"} & set(page.parts)]
+    assert len({page.parent for page in pages}) > 8
+    for page in [*ROOT.glob("*.md"), *pages, *ROOT.glob("benchmarks/*.md")]:
         contents = page.read_text(encoding="utf-8")
         links = re.findall(r"\]\(([^)#\s]+)(?:#[^)]*)?\)", contents)
+        links += re.findall(r"^```\{(?:image|literalinclude)\} (\S+)", contents, re.MULTILINE)
         for target in links + re.findall(r'src(?:set)?="([^"]+)"', contents):
             assert "://" in target or (page.parent / target).exists(), f"{page.name}: {target}"
+        for name in re.findall(r"\{doc\}`(?:[^`<]*<)?([^`>]+)>?`", contents):
+            place = ROOT / "docs" / name[1:] if name.startswith("/") else page.parent / name
+            assert "generated/" in name or place.with_name(f"{place.name}.md").exists(), (
+                f"{page.name}: {name}"
+            )
+
+
+def test_every_page_is_named_once_in_the_tables_of_contents():
+    docs = ROOT / "docs"
+    pages = [page for page in docs.rglob("*.md") if not {"generated", "_build"} & set(page.parts)]
+    listed = []
+    for page in pages:
+        for table in re.findall(r"^```\{toctree\}\n(.*?)^```", page.read_text(encoding="utf-8"), re.M | re.S):
+            names = re.findall(r"^(?!:)(?:.*<)?([\w/.]+)>?$", table, re.MULTILINE)
+            listed += [(page.parent / f"{name}.md").resolve() for name in names if "generated/" not in name]
+    assert sorted(listed) == sorted(page for page in pages if page != docs / "index.md")
 
 
 def test_files_that_contributors_are_sent_to_are_there():
@@ -195,7 +215,7 @@ def test_the_thesis_is_cited_without_a_title_and_its_papers_by_theirs():
 
 def test_what_the_page_on_the_thesis_names_is_there():
     """Every function and test by its file, and every command with its sub-command."""
-    page, roots = text("docs/against_the_thesis.md"), (ROOT / "src" / "asperity", ROOT / "tests")
+    page, roots = text("docs/evidence/against_the_thesis.md"), (ROOT / "src" / "asperity", ROOT / "tests")
     named = re.findall(r"`([\w/]+\.py)::([\w.]+)`", page)
     assert len(named) > 30
     for path, name in named:
@@ -263,5 +283,5 @@ def test_numbers_of_the_paper_are_those_of_the_map():
     assert f"with its filter by {median('linear-filtered', smooth):.1f} dB" in stated
     assert f"without by {median('linear', smooth):.1f} dB" in stated
     assert median("table", kept) < 0.1
-    (share,) = re.findall(r"\| all \|.*?(\d+) % \|", text("docs/law_accuracy.md"))
+    (share,) = re.findall(r"\| all \|.*?(\d+) % \|", text("docs/evidence/law_accuracy.md"))
     assert f"held in {share} % of cases" in stated

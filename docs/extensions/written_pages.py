@@ -34,7 +34,7 @@ COPIED = {
 }
 """Pages that stand elsewhere in the repository, and their names here."""
 HOMES = {ROOT / source: WRITTEN / f"{name}.md" for source, name in COPIED.items()} | {
-    ROOT / "README.md": DOCS / "start.md",
+    ROOT / "README.md": DOCS / "start/index.md",
     ROOT / "examples": WRITTEN / "gallery/index.rst",
 }
 NEEDS = {

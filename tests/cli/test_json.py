@@ -1,4 +1,4 @@
-"""``--json``: one document on standard output, whatever happens, in the form that docs/json.md describes."""
+"""``--json``: one document, whatever happens, in the form that docs/reference/json.md describes."""
 
 import json
 import re
@@ -13,7 +13,7 @@ from asperity.results import read_result
 from asperity.terminal import json_ready
 from command_line import SMALL, call
 
-DOCUMENT = Path(__file__).parents[2] / "docs" / "json.md"
+DOCUMENT = Path(__file__).parents[2] / "docs" / "reference" / "json.md"
 
 
 @pytest.fixture(autouse=True, scope="module")
@@ -41,12 +41,12 @@ def document(*arguments, code=0):
 
 
 def chapter(heading):
-    """A chapter of docs/json.md."""
+    """A chapter of docs/reference/json.md."""
     return DOCUMENT.read_text(encoding="utf-8").split(f"\n## {heading}\n")[1].split("\n## ")[0]
 
 
 def documented(heading):
-    """Names that docs/json.md lists in a chapter."""
+    """Names that docs/reference/json.md lists in a chapter."""
     rows = re.findall(r"^\|(.*?)\|", chapter(heading), re.M)
     return {name for row in rows for name in re.findall(r"`(\w+)`", row)}
 

@@ -78,7 +78,7 @@ def test_nothing_on_its_page_bars_anybody(folder, browser):
 
 def test_its_document_and_its_page_are_what_the_documentation_says(folder):
     out, told, _ = folder
-    page = (Path(__file__).parents[2] / "docs" / "json.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[2] / "docs" / "reference" / "json.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\|(.*?)\|", page.split("\n## optimise\n")[1].split("\n## ")[0], re.M)
     listed = re.findall(r"`(\w+)`", " ".join(rows))
     assert listed

@@ -1,4 +1,4 @@
-"""Writes docs/result_file.md from the schema: ``python tests/reporting/schema_page.py``."""
+"""Writes docs/reference/result_file.md from the schema: ``python tests/reporting/schema_page.py``."""
 
 from pathlib import Path
 
@@ -17,7 +17,7 @@ from asperity.schema import (
 
 SHARED = (provenance, contact, rolling, spectra, convergence)
 
-PAGE = Path(__file__).parents[2] / "docs" / "result_file.md"
+PAGE = Path(__file__).parents[2] / "docs" / "reference" / "result_file.md"
 HEAD = f"""# What `run.nc` holds
 
 Version {VERSION} of the schema: the attribute `schema_version` of a file names its own. A file of another

@@ -84,7 +84,7 @@ def test_measured_map(name, lightest):
     file = DATA / "aa5754_um.npz"
     if not file.exists():
         pytest.skip(
-            "the measured maps of AA5754 are not here (docs/real_surfaces.md says where they are from)"
+            "the measured maps of AA5754 are not here (docs/surfaces/real_surfaces.md: where they are from)"
         )
     surface = HeightMap(1e-6 * np.load(file)[name][0], 1.5625e-6)
     grid = {"spacing": "5 um", "window": "0.5 mm", "samples": 6, "sample_length": "1 mm"}

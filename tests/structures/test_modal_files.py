@@ -54,7 +54,7 @@ def test_a_text_table(tmp_path, text):
 
 
 def test_the_table_of_the_documentation_is_one(tmp_path):
-    page = (Path(__file__).parents[2] / "docs" / "bodies.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[2] / "docs" / "beams" / "bodies.md").read_text(encoding="utf-8")
     (tmp_path / "page.csv").write_text(page.partition("```text\n")[2].partition("```")[0])
     found = modal_files.read_modal_structure(tmp_path / "page.csv")
     assert found.frequencies.tolist() == [52.4, 209.8]

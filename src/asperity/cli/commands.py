@@ -34,7 +34,7 @@ PATH = click.Path(path_type=Path)
 PICTURES = (".svg", ".pdf", ".png")
 Completion = Callable[[click.Context, click.Parameter, str], list[str]]
 FORMAT = 1
-"""Of documents, which ``docs/json.md`` describes: raised where a name or meaning in them changes or goes."""
+"""Of documents (``docs/reference/json.md``): raised where a name or meaning in them changes or goes."""
 FAILED = 3
 INTERRUPTED = 130
 _INTERRUPTED = "interrupted; run the same command again to continue"
@@ -69,7 +69,7 @@ class Command(click.Command):
         text = text.replace("KIND", next(iter(kinds())))
         self.help, _, self.examples = text.partition("\n\nExamples\n--------\n")
         if document:
-            words = "Print one JSON document, as docs/json.md describes, for programs."
+            words = "Print one JSON document, as docs/reference/json.md describes, for programs."
             self.params.append(_manner_option("--json", "document", help=words))
         if long_work:
             quiet = "Show no progress and no remarks; warnings and errors stay."

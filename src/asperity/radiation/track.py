@@ -160,10 +160,10 @@ class RailSection:
     nothing. In between the ratio is that of the oscillating cylinder with the same two limits, whose radius
     is (D²/(8 π b_f))^(1/3).
 
-    Against a boundary element solution of the section 60E1 in free air (docs/noise.md): −0.7 to +1.4 dB in
-    the one-third octaves up to 1.6 kHz, −3.8 dB at 2 kHz, where the space between head and foot resonates,
-    −2.4 to +0.2 dB above. In two dimensions: the waves in the rail are longer than those in the air, and
-    reach farther than those are long. Without the ground under the rail.
+    Against a boundary element solution of the section 60E1 in free air (docs/railway/noise.md): −0.7 to
+    +1.4 dB in the one-third octaves up to 1.6 kHz, −3.8 dB at 2 kHz, where the space between head and foot
+    resonates, −2.4 to +0.2 dB above. In two dimensions: the waves in the rail are longer than those in the
+    air, and reach farther than those are long. Without the ground under the rail.
     """
 
     foot_width: float

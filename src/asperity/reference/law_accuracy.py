@@ -1,8 +1,8 @@
 """How far each contact law was from `direct` on the cases of the law accuracy map.
 
-The map is data, made by ``benchmarks/law_accuracy.py`` and told of in ``docs/law_accuracy.md``. Laws bear the
-names that stand in cases; ``linear-remington``, ``linear-dprs`` and ``linear-cnossos`` are filters of
-practice in front of the linear contact of smooth bodies.
+The map is data, made by ``benchmarks/law_accuracy.py`` and told of in ``docs/evidence/law_accuracy.md``.
+Laws bear the names that stand in cases; ``linear-remington``, ``linear-dprs`` and ``linear-cnossos`` are
+filters of practice in front of the linear contact of smooth bodies.
 """
 
 import json

@@ -165,9 +165,9 @@ def listen(
 
     Notes
     -----
-    Vibration is heard as it is, neither radiated nor transmitted; docs/conventions.md says how the pressure
-    beside a track is made. Means are taken off; what lies above 24 kHz is left out. Both ends fade over
-    10 ms.
+    Vibration is heard as it is, neither radiated nor transmitted; docs/method/conventions.md says how the
+    pressure beside a track is made. Means are taken off; what lies above 24 kHz is left out. Both ends
+    fade over 10 ms.
 
     Examples
     --------

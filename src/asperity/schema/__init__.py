@@ -1,7 +1,7 @@
 """What a result file holds: each variable and attribute once, for who writes it and for who draws it.
 
 One module per group holds what all kinds of case share; what depends on the scene stands in
-`asperity.scenes.schema`. ``docs/result_file.md`` lists it all.
+`asperity.scenes.schema`. ``docs/reference/result_file.md`` lists it all.
 """
 
 import json
