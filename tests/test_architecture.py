@@ -11,6 +11,7 @@ import pytest
 
 import asperity
 from asperity import laws
+from asperity.scenes.observers import OVER_STRUCTURES
 
 ROOT = Path(__file__).parents[1]
 SOURCE = Path(asperity.__file__).parent
@@ -100,6 +101,18 @@ def test_hdf5_is_opened_at_one_place():
             names += [node.module or ""] if isinstance(node, ast.ImportFrom) else []
             opens = {name.partition(".")[0] for name in names} & {"h5py", "h5netcdf", "netCDF4"}
             assert not opens or module.name == "hdf5.py", module
+
+
+def test_a_result_names_none_of_its_observers():
+    """A further one is its file and its name in one list."""
+    homes = {each.observe.__module__ for each in OVER_STRUCTURES}
+    for name in ("result.py", "over_frequency.py", "compute.py"):
+        tree = parsed(SOURCE / "scenes" / name)[1]
+        for node in ast.walk(tree):
+            if isinstance(node, ast.ImportFrom):
+                named = {f"{node.module}.{each.name}" for each in node.names} | {node.module}
+                assert not named & homes, f"{name}: {named & homes}"
+    assert len(homes) > 3
 
 
 def has_its_own_name(module, name):

@@ -312,7 +312,7 @@ def test_an_observer_that_fails_does_not_lose_the_run(broken):
 
 def looked_at(found):
     """Values of an observer that lays out two dimensions, a text and numbers in JSON."""
-    return Observer("own", (LAW, TIME, LEVEL, WORDS, NUMBERS), lambda computed: found).values(None)
+    return Observer("own", (LAW, TIME, LEVEL, WORDS, NUMBERS), dict).declared(found)
 
 
 LAW, TIME = Entry("own", "law", "1", "contact law"), Entry("own", "time", "s", "time")

@@ -8,7 +8,7 @@ import pytest
 from asperity import Beam, Bodies, ModalStructure, Profile, Wheel, WheelOnRail, errors, material
 from asperity.scenarios.scene import scene_of
 from asperity.scenarios.textures import other_contacts, textures_of, textures_under
-from asperity.scenes.result import passing_frequencies
+from asperity.scenes.over_frequency import passing_frequencies
 
 ROUGH = {"rms": "0.05 um", "longest": "0.4 mm", "shortest": "80 um"}
 COARSE = {"spacing": "20 um", "window": "0.6 mm", "samples": 2, "sample_length": "1.4 mm"}

@@ -5,8 +5,9 @@ import math
 import time
 import warnings
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -34,8 +35,13 @@ from asperity.structures.moving_kernel import moving_kernel
 from asperity.structures.rail_poles import RailBetween, poles_or_kernel, rail_between
 from asperity.structures.track import Track
 
+T = TypeVar("T")
 FORMAT = 2
 """Of a state of motion that is kept: raise it where one is laid out anew."""
+LOWEST_SWEPT = 20.0
+"""Frequency from which on receptances of a track are laid out, Hz."""
+SWEPT = 600
+"""Frequencies of receptances of a track."""
 TOLD_OF = ("laws", "noise")
 """Keys of a case by which only that is computed which is told of a motion, and the laws."""
 
@@ -52,6 +58,21 @@ class Computed(ReducedCase):
     bare_force: Array | None
     # (laws, points, n), displacement, m, and velocity, m/s, of the rail at the points that are passed
     points: tuple[Array, ...] = ()
+    _derived: dict[Callable[..., Any], Any] = field(default_factory=dict, init=False, repr=False)
+
+    @property
+    def quantities(self) -> frozenset[str]:
+        """Which of `asperity.scenes.observer.QUANTITIES` it has."""
+        sensed = {"acceleration"} if self.case.rolled_over.sensor_positions else set()
+        over = {"track"} if isinstance(self.scene.over, Track) else set()
+        return frozenset({"contact_force", "scene"} | sensed | over)
+
+    def derived(self, function: Callable[["Computed"], T]) -> T:
+        """What a function derives from this run: derived once, whoever asks for it."""
+        if function not in self._derived:
+            self._derived[function] = function(self)
+        found: T = self._derived[function]
+        return found
 
     @property
     def stiffness(self) -> float:
@@ -68,6 +89,11 @@ class Computed(ReducedCase):
         """What is rolled over, of cases that roll over a track."""
         assert isinstance(self.scene.over, Track)
         return self.scene.over
+
+    @property
+    def swept(self) -> Array:
+        """Frequencies (k,), Hz, at which receptances and decay rates of a track are laid out."""
+        return np.geomspace(LOWEST_SWEPT, self.case.numerics.highest_frequency, SWEPT)
 
     @property
     def rail(self) -> RailBetween:

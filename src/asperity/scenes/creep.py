@@ -15,8 +15,9 @@ from asperity.reduction.traction import TractionStates, middle_of, traction_stat
 from asperity.scenarios.reducing import LIGHTEST_STATE
 from asperity.scenarios.scene import PreparedCase
 from asperity.scenes import compute, schema
+from asperity.scenes.observer import Observer
 from asperity.scenes.sideways import Sideways
-from asperity.schema import Values
+from asperity.schema import Values, declared
 from asperity.structures.squeal import (
     FREE_OF_AXLE,
     CreepingContact,
@@ -163,3 +164,12 @@ def _squeal(computed: compute.Computed, bodies: creep.CreepingBodies) -> Values:
         schema.LARGEST_GROWTH: float(np.max(-omega.imag[known], initial=-np.inf)),
         schema.SQUEAL_GROWTH: float(np.max(-omega.imag[believed], initial=-np.inf)),
     }
+
+
+OBSERVER = Observer(
+    "creep",
+    [each for each in declared(schema) if each.condition.startswith(schema.CREEPS)],
+    creep_group,
+    needs=("track",),
+    sources=SOURCES,
+)

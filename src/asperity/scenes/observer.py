@@ -1,25 +1,77 @@
-"""What a package beside this one looks at in a run: entries of the result, and a function that finds them."""
+"""What is looked at in a run: entries of the result, a function that finds them, and what is doubted."""
 
 import json
 import re
 import warnings
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, Protocol
 
 import numpy as np
 import xarray
 
 from asperity import extensions
-from asperity.arguments import require, shown
-from asperity.errors import InputError, reason
-from asperity.scenes.compute import Computed
-from asperity.schema import Attribute, Entry, Values
+from asperity.arguments import Array, require, shown
+from asperity.case.any_case import AnyCase
+from asperity.errors import Finding, InputError, reason
+from asperity.scenes import schema
+from asperity.schema import (
+    Attribute,
+    Entry,
+    Values,
+    bearing,
+    contact,
+    convergence,
+    declared,
+    provenance,
+    rolling,
+    spectra,
+)
+
+DECLARING = (bearing, contact, convergence, provenance, rolling, spectra, schema)
+"""Modules that declare what results hold."""
+QUANTITIES = {
+    "contact_force": "forces of all contacts in time (contacts, steps), N",
+    "acceleration": "accelerations at sensors in time (sensors, steps), m/s²",
+    "scene": "bodies that roll over a structure",
+    "track": "bodies that roll over a track",
+    "bearing": "a ball bearing that turns",
+}
+"""What a run may have that an observer needs."""
+OVER_A_STRUCTURE = ("scene",)
+"""What an observer needs that says nothing of it."""
 
 
-def _everywhere(computed: Computed) -> bool:
+class ComputedRun(Protocol):
+    """What every run that was computed has, of bodies on structures and of bearings alike.
+
+    Beside it stands what its kind has: `asperity.scenes.compute.Computed` its scene, its shape and its
+    textures, `asperity.scenes.computed_bearing.ComputedBearing` its bearing and its raceways.
+    """
+
+    @property
+    def case(self) -> AnyCase:
+        """The case."""
+
+    @property
+    def runs(self) -> Mapping[str, Any]:
+        """Records in time, by law; each has its ``time`` and its ``contact_force`` (contacts, steps), N."""
+
+    @property
+    def quantities(self) -> frozenset[str]:
+        """Which of the `QUANTITIES` it has."""
+
+    def stacked(self, name: str) -> Array:
+        """Stack one record of all runs, (laws, contacts or sensors, ...), by the name of its attribute."""
+
+
+def _everywhere(computed: Any) -> bool:
     """Every run has what is looked at."""
     return True
+
+
+def _nothing(computed: Any) -> tuple[Any, ...]:
+    return ()
 
 
 @dataclass(frozen=True)
@@ -29,16 +81,24 @@ class Observer:
     Parameters
     ----------
     name : str
-        Group of the result in which its entries stand.
+        What is looked at; of a package of one's own the group of the result in which its entries stand.
     entries : sequence of Entry and Attribute
         All that it may lay out, each with its dimensions, unit and meaning.
     observe : callable
-        ``observe(computed)`` returns values of some of them, by entry, of a run: its case, its scene, its
-        records in time by law (`asperity.scenes.compute.Computed`).
+        ``observe(computed)`` returns values of some of them, by entry, of a run: its case, its records in
+        time by law, and what its kind has beside (`ComputedRun`).
+    needs : sequence of str
+        Those of the `QUANTITIES` without which a run is not asked: ``["contact_force"]`` is asked of every
+        run, ``["bearing"]`` of ball bearings. By default bodies on structures alone are asked.
     asked_of : callable
-        ``asked_of(computed)`` says whether a run has what it takes.
-    sources : sequence of str
-        What its method is cited by.
+        ``asked_of(computed)`` says whether a run that has them has what it takes.
+    findings : callable
+        ``findings(computed)`` returns what is doubted of such a run, as `asperity.errors.Finding`, which
+        stands in the table of validity and is warned of by its grade.
+    numerics : callable
+        ``numerics(computed)`` returns numbers of the computation: names and values, in words.
+    sources : sequence of str, or callable
+        What its method is cited by, where it lays something out; or a function of such a run that says so.
 
     Raises
     ------
@@ -48,30 +108,38 @@ class Observer:
 
     name: str
     entries: Sequence[Entry | Attribute]
-    observe: Callable[[Computed], Values]
-    asked_of: Callable[[Computed], bool] = _everywhere
-    sources: Sequence[str] = ()
+    observe: Callable[[Any], Values]
+    needs: Sequence[str] = OVER_A_STRUCTURE
+    asked_of: Callable[[Any], bool] = _everywhere
+    findings: Callable[[Any], Sequence[Finding]] = _nothing
+    numerics: Callable[[Any], Iterable[tuple[str, str]]] = _nothing
+    sources: Sequence[str] | Callable[[Any], Sequence[str]] = ()
 
     def __post_init__(self) -> None:
         what = f"observer {self.name}"
         word = isinstance(self.name, str) and re.fullmatch(r"\w+", self.name)
         require(word, "name of an observer", shown(self.name), "letters, digits and underscores")
-        for function in (self.observe, self.asked_of):
+        for function in (self.observe, self.asked_of, self.findings, self.numerics):
             require(callable(function), what, shown(function), "a function of what was computed")
-        cited = not isinstance(self.sources, str) and all(isinstance(each, str) for each in self.sources)
-        require(cited, f"sources of {what}", shown(self.sources), "a list of texts")
-        elsewhere = sorted({each.group for each in self.entries if each.group != self.name})
+        listed = not isinstance(self.needs, str) and set(self.needs) <= QUANTITIES.keys()
+        require(listed, f"needs of {what}", shown(self.needs), f"a list of {', '.join(QUANTITIES)}")
+        if not callable(self.sources):
+            cited = not isinstance(self.sources, str) and all(isinstance(each, str) for each in self.sources)
+            require(cited, f"sources of {what}", shown(self.sources), "a list of texts")
         require(self.entries, what, "no entry", "what it lays out, as asperity.schema.Entry")
-        allowed = f'entries of the group "{self.name}"'
-        require(not elsewhere, what, ", ".join(elsewhere), allowed)
 
-    def values(self, computed: Computed) -> Values:
-        """Look at a run; an `InputError` says what is wrong with what was found."""
-        try:
-            found = self.observe(computed) if self.asked_of(computed) else {}
-        except Exception as error:  # the run is not lost for it
-            received = f"a failure, {reason(error)}"
-            raise InputError(f"observer {self.name}", received, "values of its entries") from error
+    def look(self, computed: ComputedRun) -> "Observed":
+        """Ask it of a run: nothing where that lacks what is needed."""
+        if not set(self.needs) <= computed.quantities or not self.asked_of(computed):
+            return Observed()
+        values = self.observe(computed)
+        sources = self.sources(computed) if callable(self.sources) else self.sources
+        findings = self.findings(computed)
+        numerics = self.numerics(computed)
+        return Observed(values, list(findings), list(numerics), list(sources) if values else [])
+
+    def declared(self, found: Any) -> Values:
+        """Make what it found ready to be written; an `InputError` says what is not as it declares."""
         what = f"observer {self.name}"
         require(isinstance(found, Mapping), what, shown(found), "values by its entries, as a dict")
         strange = [shown(each) for each in found if each not in self.entries]
@@ -79,15 +147,34 @@ class Observer:
         return _fitting(what, found)
 
 
+@dataclass(frozen=True)
+class Observed:
+    """What observers say of a run: what they lay out, what they doubt, numbers, and what that is cited by."""
+
+    values: Values = field(default_factory=dict)
+    findings: list[Finding] = field(default_factory=list)
+    numerics: list[tuple[str, str]] = field(default_factory=list)
+    sources: list[str] = field(default_factory=list)
+
+    def __or__(self, other: "Observed") -> "Observed":
+        return Observed(
+            self.values | other.values,
+            self.findings + other.findings,
+            self.numerics + other.numerics,
+            self.sources + other.sources,
+        )
+
+
 def _fitting(observer: str, found: Mapping[Entry | Attribute, Any]) -> Values:
     """Make what an observer found ready to be written, or say by an `InputError` what does not fit."""
     made = {item: _written(item, value, observer) for item, value in found.items()}
     variables = {item: value for item, value in made.items() if isinstance(item, Entry)}
-    sizes: dict[str, int] = {}
+    sizes: dict[str, dict[str, int]] = {entry.group: {} for entry in variables}
     for entry in sorted(variables, key=lambda item: item.place != item.name):  # coordinates first
+        known = sizes[entry.group]
         shape = variables[entry].shape
-        allowed = ", ".join(f"{name}: {sizes.get(name, 'any size')}" for name in entry.dims)
-        fits = all(sizes.setdefault(*each) == each[1] for each in zip(entry.dims, shape, strict=True))
+        allowed = ", ".join(f"{name}: {known.get(name, 'any size')}" for name in entry.dims)
+        fits = all(known.setdefault(*each) == each[1] for each in zip(entry.dims, shape, strict=True))
         require(fits, f"{entry.place} of {observer}", f"the shape {shape}", f"dimensions ({allowed})")
     return made
 
@@ -131,25 +218,41 @@ def _installed(name: str, observer: Any) -> Observer:
     require(
         observer.name == name, "name of the observer", shown(observer.name), f'"{name}", as its entry point'
     )
+    elsewhere = sorted({each.group for each in observer.entries if each.group != name})
+    require(not elsewhere, f"observer {name}", ", ".join(elsewhere), f'entries of the group "{name}"')
+    taken = {item.group for module in DECLARING for item in declared(module)}
+    allowed = f"a group of its own, none of {', '.join(sorted(taken - {''}))}"
+    require(name not in taken, "group of the observer", name, allowed)
     return observer
 
 
-def observed(computed: Computed, others: Values) -> tuple[Values, tuple[str, ...]]:
-    """Lay out what observers find in a run, beside all `others` in its result, and the sources of that.
+def observed(computed: ComputedRun, built_in: Iterable[Observer]) -> Observed:
+    """Ask observers of a run: those that are built in, then those of packages beside this one.
 
-    One that fails is named in a warning, and left out.
+    One of a package that fails is named in a warning, and left out.
     """
-    laid_out: Values = {}
-    sources: list[str] = []
-    groups = {item.group for item in others}
+    seen = Observed()
+    for observer in built_in:
+        found = observer.look(computed)
+        seen |= replace(found, values=observer.declared(found.values))
     for observer in observers().values():
         try:
-            allowed = f"a group of its own, none of {', '.join(sorted(groups))}"
-            require(observer.name not in groups, "group of the observer", observer.name, allowed)
-            found = observer.values(computed)
+            seen |= _of_a_package(observer, computed)
         except InputError as error:
             warnings.warn(extensions.ExtensionWarning(f"{error} It is left out."), stacklevel=2)
-            continue
-        laid_out |= found
-        sources += observer.sources if found else ()
-    return laid_out, tuple(sources)
+    return seen
+
+
+def _of_a_package(observer: Observer, computed: ComputedRun) -> Observed:
+    """Ask one that must not lose the run, whatever it does."""
+    what = f"observer {observer.name}"
+    try:
+        seen = observer.look(computed)
+        words = [each for name, value in seen.numerics for each in (name, value)] + seen.sources
+    except Exception as error:
+        raise InputError(what, f"a failure, {reason(error)}", "values of its entries") from error
+    doubts = [shown(each) for each in seen.findings if not isinstance(each, Finding)]
+    require(not doubts, f"findings of {what}", ", ".join(doubts), "asperity.errors.Finding")
+    strange = [shown(each) for each in words if not isinstance(each, str)]
+    require(not strange, f"numerics and sources of {what}", ", ".join(strange), "texts")
+    return replace(seen, values=observer.declared(seen.values))

@@ -11,6 +11,7 @@ from asperity.arguments import Array
 from asperity.reporting import data
 from asperity.scenarios.scene import PreparedCase
 from asperity.scenes import schema
+from asperity.scenes.observer import Observer
 from asperity.schema import Values
 from asperity.spectra import level_of
 from asperity.written_numbers import rounded
@@ -109,3 +110,11 @@ def orders_group(prepared: PreparedCase) -> Values:
         schema.ORDER_LEVEL: found.level,
         schema.RUN_OUT: found.swing,
     }
+
+
+OBSERVER = Observer(
+    "roundness",
+    (schema.ORDER, schema.ORDER_FREQUENCY, schema.ORDER_LEVEL, schema.RUN_OUT),
+    orders_group,
+    numerics=planned_roundness,
+)

@@ -403,12 +403,12 @@ SLIP_FORCE = _side_fact("slip_force", "N", "coefficient of friction times the st
 
 # --- creep and friction
 
-_CREEPS = "where [creep] gives a creepage of a wheel on a rail"
+CREEPS = "where [creep] gives a creepage of a wheel on a rail"
 _creep, _creep_fact = (
-    partial(Entry, "creep", condition=_CREEPS),
-    partial(Attribute, "creep", condition=_CREEPS),
+    partial(Entry, "creep", condition=CREEPS),
+    partial(Attribute, "creep", condition=CREEPS),
 )
-_creeping = partial(_rolling, condition=_CREEPS)
+_creeping = partial(_rolling, condition=CREEPS)
 WAYS = "along", "to the field side"
 _WAY = "direction of a force on the wheel"
 _OF_WHEEL = "friction force on the wheel"
@@ -431,7 +431,7 @@ CREEPAGE = _creep_fact("creepage", "JSON", "of wheel on rail: along, to the fiel
 FULL_SLIP_SCALE = _creep_fact("full_slip_scale", "1", "part of the creepages from which on all slips")
 FULL_SLIP_LOAD = _creep_fact("full_slip_load", "N", "load up to which all slips; infinite if that is any")
 
-_SQUEALS = f"{_CREEPS}, and the axial modes of its wheel are known"
+_SQUEALS = f"{CREEPS}, and the axial modes of its wheel are known"
 _squeal = partial(_creep, condition=_SQUEALS, missing="this motion is damped too much to be found")
 SQUEAL_MODE = _squeal("squeal_mode", "1", "free motion of the wheel on the rail, one for each of its modes")
 SQUEAL_FREQUENCY = _squeal("squeal_frequency(squeal_mode)", "Hz", "frequency, as the contact feels it")

@@ -13,8 +13,8 @@ from asperity.radiation.track import SideOfRail, squared_lateral_mobility
 from asperity.radiation.wheel import RadiatingWheel, fine_lines, line_means
 from asperity.scenarios.scene import force_transfer
 from asperity.scenes import compute, noise, schema
-from asperity.scenes.track import FREQUENCIES, LOWEST_FREQUENCY
-from asperity.schema import Values
+from asperity.scenes.observer import Observer
+from asperity.schema import Values, declared
 from asperity.structures import lateral_rail, modal
 from asperity.structures.track import Track
 from asperity.structures.wheel_modes import WheelModes
@@ -199,9 +199,14 @@ def sideways_of(computed: compute.Computed) -> Sideways | None:
     return Sideways(computed) if moves and isinstance(computed.scene.over, Track) else None
 
 
-def sideways_group(found: Sideways) -> Values:
-    """Lay out receptances and decay sideways, the lateral force of each law, and its grip."""
-    computed = found.computed
+def sideways_group(computed: compute.Computed) -> Values:
+    """Lay out receptances and decay sideways, the lateral force of each law, and its grip.
+
+    Nothing where nothing moves sideways.
+    """
+    found = computed.derived(sideways_of)
+    if found is None:
+        return {}
     case, band = computed.case, computed.band
     contacts = len(computed.scene.offsets)
     limit = case.sideways.friction * computed.shape.load
@@ -216,7 +221,7 @@ def sideways_group(found: Sideways) -> Values:
     of_each = np.sqrt(density.sum(axis=-1) * step)
     with np.errstate(divide="ignore"):
         slips = np.vectorize(math.erfc)(limit / (math.sqrt(2.0) * of_each)).mean(axis=1)
-    frequency = np.geomspace(LOWEST_FREQUENCY, case.numerics.highest_frequency, FREQUENCIES)
+    frequency = computed.swept
     rail = found.rail(frequency, 0.5 * found.track.track.sleeper_spacing)
     wheel = found.wheel(frequency)
     free = 1.0 / found.answers[0, 0]  # vertical force per height of a contact that is free sideways
@@ -243,3 +248,12 @@ def sideways_group(found: Sideways) -> Values:
         schema.STICK_STIFFNESS: found.stiffness[1],
         schema.SLIP_FORCE: limit,
     }
+
+
+OBSERVER = Observer(
+    "sideways",
+    [each for each in declared(schema) if each.group == "sideways"] + [schema.LATERAL_FORCE_PSD],
+    lambda computed: computed.derived(sideways_group),
+    needs=("track",),
+    sources=SOURCES,
+)

@@ -10,13 +10,18 @@ from asperity import spectra
 from asperity.arguments import Array
 from asperity.errors import Finding, Grade, LossFactorWarning, warn_of_findings
 from asperity.reduction.texture import along_path
+from asperity.reference import cnossos
 from asperity.reference.railways import iso_3095_decay_rate
 from asperity.reporting import data
 from asperity.scenarios.laws import working_point
 from asperity.scenarios.records import spectrum_levels
 from asperity.scenarios.scene import PreparedCase, Receptance, Scene, mean_square_transfer
 from asperity.scenes import compute, measured, noise, schema
-from asperity.schema import Values
+from asperity.scenes.observer import Observer
+from asperity.scenes.over_frequency import held_values
+from asperity.scenes.sideways import sideways_group, sideways_of
+from asperity.schema import Values, declared, group
+from asperity.schema import spectra as spectra_schema
 from asperity.structures.causal_track import causal_track
 from asperity.structures.track import Track, decay_rate, decay_rate_en15461
 from asperity.surfaces.bands import band_levels_of
@@ -24,15 +29,13 @@ from asperity.surfaces.heightmap import Profile
 from asperity.written_numbers import between, rounded
 
 
-def track_spectra(computed: compute.Computed, values: Array, side: noise.SidewaysPower | None) -> Values:
-    """Lay out texture, linear reference, motion of the rail, and sound power, of what rolls over a track.
-
-    With the independent values that the record holds in each band (b,), and the sound power of what moves
-    sideways, if something does.
-    """
+def track_spectra(computed: compute.Computed) -> Values:
+    """Lay out texture, linear reference, motion of the rail, and sound power, of what rolls over a track."""
     shown = computed.shown
     reference, texture = linear_reference(computed)
     velocity = computed.psd(computed.points[1])
+    *_, values = computed.derived(held_values)
+    side = computed.derived(sideways_of)
     return {
         schema.TEXTURE_PSD: texture[shown],
         schema.LINEAR_REFERENCE_PSD: reference[shown],
@@ -42,7 +45,8 @@ def track_spectra(computed: compute.Computed, values: Array, side: noise.Sideway
         schema.POINT_VELOCITY_LEVEL: computed.levels(velocity, schema.VELOCITY_REFERENCE),
         **_roughness(computed),
         **noise.noise(computed),
-        **noise.radiation(computed, values, side),
+        **noise.radiation(computed, values, None if side is None else side.power),
+        **tones(computed),
     }
 
 
@@ -185,7 +189,6 @@ def tones(computed: compute.Computed) -> Values:
     }
 
 
-LOWEST_FREQUENCY, FREQUENCIES = 20.0, 600
 OF_TRACK = (
     schema.NAME,
     schema.SLEEPER_SPACING,
@@ -197,7 +200,7 @@ OF_TRACK = (
 """What a track says of itself under these names."""
 
 
-def track_group(computed: compute.Computed, losses: Values) -> Values:
+def track_group(computed: compute.Computed) -> Values:
     """Lay out what the wheel rolls on: receptances, decay rates, loss factors and numbers.
 
     None of it depends on what has rolled.
@@ -205,7 +208,7 @@ def track_group(computed: compute.Computed, losses: Values) -> Values:
     track = computed.track
     in_time = computed.rail.kernel.track
     load = computed.shape.load
-    frequency = np.geomspace(LOWEST_FREQUENCY, computed.case.numerics.highest_frequency, FREQUENCIES)
+    frequency = computed.swept
     half = float(track.mid_spans[0])
     midspan, support = track.receptance(frequency, [half, 0.0], [half, 0.0])
     return {
@@ -215,14 +218,14 @@ def track_group(computed: compute.Computed, losses: Values) -> Values:
         schema.RECEPTANCE_SUPPORT: np.abs(support),
         schema.RECEPTANCE_SUPPORT_PHASE: np.angle(support),
         schema.WHEEL_RECEPTANCE: np.abs(computed.scene.first(frequency)),
-        schema.CONTACT_RECEPTANCE: np.full(FREQUENCIES, 1.0 / computed.stiffness),
+        schema.CONTACT_RECEPTANCE: np.full(len(frequency), 1.0 / computed.stiffness),
         schema.DECAY_RATE: decay_rate(track, frequency),
         schema.DECAY_RATE_EN15461: decay_rate_en15461(track, frequency),
         schema.DECAY_RATE_LIMIT: iso_3095_decay_rate(frequency),
         **facts(track),
         schema.STATIC_DEFLECTION: track.static_deflection(load, half),
         schema.STATIC_DEFLECTION_IN_TIME: in_time.static_deflection(load, half),
-        **losses,
+        **computed.derived(losses_of),
         **_bays(track, frequency),
     }
 
@@ -283,6 +286,12 @@ def loss_factor_error(track: Track, wheel: Receptance, stiffness: float, highest
     return {schema.TRACK_BAND: bands, schema.LOSS_FACTOR_FORCE_ERROR: error}
 
 
+def losses_of(computed: compute.Computed) -> Values:
+    """The same of what was rolled over, up to the highest frequency of its case."""
+    highest = computed.case.numerics.highest_frequency
+    return loss_factor_error(computed.track, computed.scene.first, computed.stiffness, highest)
+
+
 def findings_of_losses(losses: Values) -> list[Finding]:
     """Hold the error of the contact force to its limit; nothing where the track has no loss factors."""
     if not losses:
@@ -317,6 +326,50 @@ def described_losses(losses: Values) -> Iterator[tuple[str, str]]:
     ]
     shown = [*off, f"{'else ' if off else ''}below {LEAST_SHOWN:g}"]
     yield "loss factors in time", f"error of the contact force, dB: {', '.join(shown)}"
+
+
+def pass_by_of(computed: compute.Computed) -> Values:
+    """Lay out levels beside the track; note where they lack the wheel's part."""
+    noise.warn_of_silence(computed.case)
+    over_bands: Values = {spectra_schema.LAW: list(computed.runs), spectra_schema.BAND: computed.band}
+    in_bands = group(over_bands | computed.derived(track_spectra))
+    return noise.pass_by_group(computed.case, in_bands, computed.derived(sideways_group))
+
+
+def findings_of_noise(computed: compute.Computed) -> list[Finding]:
+    """Hold what CNOSSOS-EU knows, and what was measured, to the track and the wheel of the case."""
+    case = computed.case
+    labelled = schema.SOUND_POWER_LEVEL_A in computed.derived(track_spectra)
+    of_labels = noise.findings_of_labels(case) if labelled else []
+    return of_labels + measured.findings_of_measured(case.track, computed.track.nominal, computed.band)
+
+
+TRACK = Observer(
+    "track",
+    [each for each in declared(schema) if each.group == "track"],
+    track_group,
+    needs=("track",),
+    findings=lambda computed: findings_of_losses(computed.derived(losses_of)),
+    numerics=lambda computed: described_losses(computed.derived(losses_of)),
+    sources=lambda computed: computed.track.sources,
+)
+"""The track by itself."""
+RAIL = Observer(
+    "rail",
+    [each for each in declared(schema) if each.group == "spectra"],
+    lambda computed: computed.derived(track_spectra),
+    needs=("track",),
+    findings=findings_of_noise,
+    sources=lambda computed: (cnossos.CITATION, *noise.sources_of(computed.case)),
+)
+"""Motion and sound power of what rolls over a track, over frequency."""
+PASS_BY = Observer(
+    "pass_by",
+    [each for each in declared(schema) if each.group == "pass_by"],
+    pass_by_of,
+    needs=("track",),
+)
+"""What is heard beside the track."""
 
 
 def planned_track(prepared: PreparedCase) -> list[tuple[str, str]]:

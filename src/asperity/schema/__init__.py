@@ -8,6 +8,7 @@ import json
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from asperity.errors import Grade, InputError, PhysicsWarning
@@ -83,6 +84,11 @@ class Attribute:
     units: str  # in SI; ``"text"``, or ``"JSON"`` for what is laid out as that
     meaning: str  # what it is
     condition: str = ""  # which results have it, where not all have
+
+
+def declared(module: ModuleType) -> tuple[Entry | Attribute, ...]:
+    """All entries and attributes that a module declares."""
+    return tuple(each for each in vars(module).values() if isinstance(each, Entry | Attribute))
 
 
 Values = dict[Entry | Attribute, Any]

@@ -1,0 +1,13 @@
+"""What is looked at in runs of this program, one file each, in the order in which results lay it out."""
+
+from asperity.scenes import creep, roundness, sideways, track
+
+OVER_STRUCTURES = (
+    roundness.OBSERVER,
+    track.TRACK,
+    track.RAIL,
+    track.PASS_BY,
+    sideways.OBSERVER,
+    creep.OBSERVER,
+)
+"""Of bodies that roll over structures."""
