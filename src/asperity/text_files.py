@@ -30,6 +30,12 @@ _BLOCK = 1 << 16
 _PLAIN = re.compile(r"[\d.,;+\-eE \t\n]*+", re.ASCII)
 """Numbers and what stands between them."""
 _EMPTY_LINE = re.compile(r"(?:\A|\n)[,; \t]*(?:\n|[,; \t]\Z)")
+_FORTRAN = re.compile(r"(?<=[\d.])[dD](?=[-+]?\d+\s*\Z)")
+"""The letter before an exponent in double precision."""
+_THOUSANDS = re.compile(
+    r"[-+]?\d{1,3}(?:(?:\.\d{3})+,\d+|(?:,\d{3})+\.\d+|(?:['’]\d{3})+(?:[.,]\d+)?"
+    r"|(?:[ \u00a0\u202f\u2009]\d{3})+[.,]\d+)"
+)
 _APART = re.compile(r",\s")
 """A comma that is no decimal mark."""
 
@@ -164,12 +170,24 @@ def separator_in(text: str) -> str | None:
 def number_in(text: str | bytes) -> float:
     """Number that a text holds, as people and instruments write it: ``"1.5e-3"``, ``"inf"`` or ``"nan"``.
 
-    With or without white space around. ``"1_0"``, which is ten to Python, is a `ValueError` as any other
-    text.
+    With or without white space around; exponents of ten may be those of Fortran, ``"1.5D-03"``. ``"1_0"``,
+    which is ten to Python, is a `ValueError` as any other text.
     """
     if (b"_" if isinstance(text, bytes) else "_") in text:  # type: ignore[operator]
         raise ValueError(f"no number: {text!r}")
-    return float(text)
+    try:
+        return float(text)
+    except ValueError:
+        words = text.decode("latin-1") if isinstance(text, bytes) else text
+        return float(_FORTRAN.sub("e", words))
+
+
+def in_thousands(words: Iterable[str]) -> str:
+    """The first of some words that is a number with marks between thousands; empty without one.
+
+    As ``"1.234,5"``, ``"1,234.5"`` or ``"1'234"``: what is one of them and what is two is not guessed.
+    """
+    return next((word for word in words if _THOUSANDS.fullmatch(word.strip())), "")
 
 
 def csv_text(heading: Sequence[str], rows: Iterable[Sequence[object]]) -> str:

@@ -213,3 +213,61 @@ def test_lines_of_roughness_side_by_side_stay_lines(read):
     found = read("x [mm];roughness left [um];roughness right [um]\n" + rows("{x:.2f};{z:.6f};{z:.6f}"))
     assert isinstance(found, HeightMap)
     assert found.shape == (40, 2)
+
+
+@pytest.mark.parametrize(("head", "form"), [
+    ("x [um];depth [um]", "{x:.2f};{z:.6f}"),
+    ("x (mm)\tTiefe (um)", "{m:.5f}\t{z:.6f}"),
+    ("No;x (um);Profondeur (um);std", "{k};{x:.2f};{z:.6f};0.1"),
+    ("# pixel: 0.25 um\nDepth [um]", "{z:.6f}"),
+])  # fmt: skip
+def test_depths_are_doubted(read, head, form):
+    text = "".join(
+        form.format(k=k, x=x, m=1e-3 * x, z=z) + "\n" for k, (x, z) in enumerate(zip(X, Z, strict=True))
+    )
+    with pytest.warns(OutOfRangeWarning, match=r"is taken for heights, .* change its sign in the file"):
+        line = read(f"{head}\n{text}")
+    np.testing.assert_allclose(line.heights, 1e-6 * Z, atol=1e-15)
+
+
+def test_arrays_of_depths_are_doubted(tmp_path):
+    np.savez(tmp_path / "a.npz", depth_um=1e-6 * MAP)
+    with pytest.warns(OutOfRangeWarning, match=r"a.npz: 'depth_um' is taken for heights"):
+        read_surface(tmp_path / "a.npz", height_unit="m", pixel="2 um")
+
+
+@pytest.mark.parametrize("letter", "DdE")
+@pytest.mark.parametrize("between", [" ", ";", "\t", ","])
+def test_exponents_of_any_language(read, letter, between):
+    text = "".join(f"{1e-4 * n:.4E}{between}{z:.6E}\n".replace("E", letter) for n, z in enumerate(Z))
+    line = read(f"x (mm){between}z (um)\n{text}")
+    np.testing.assert_allclose(line.heights, 1e-6 * Z, rtol=1e-6)
+    assert line.spacing == pytest.approx(1e-7)
+
+
+@pytest.mark.parametrize(
+    "number", ["1.234,5", "-1,234.5", "1'234.5", "1’234,5", "12\u202f345,67", "1.234.567,8"]
+)
+@pytest.mark.parametrize("last", [True, False])
+def test_marks_between_thousands_are_told(read, number, last):
+    lines = rows("{x:.2f};{a:.1f}").splitlines()
+    lines[-1 if last else 0] = f"{X[-1 if last else 0]:.2f};{number}"
+    text = "x (um);z (nm)\n" + "\n".join(lines)
+    with pytest.raises(InputError, match=r"with marks between thousands; .*Export them without"):
+        read(text)
+
+
+def test_marks_between_thousands_of_single_numbers_are_told(read):
+    numbers = "\n".join(f"{1000.0 + 30 * z:,.3f}".translate(str.maketrans(",.", ".,")) for z in Z)
+    with pytest.raises(InputError, match=r"'1\.\d{3},\d{3}', with marks between thousands"):
+        read(f"Height (nm)\n{numbers}\n", pixel="1 um")
+    assert read("x (mm),z (nm)\n1.234,560\n1.235,571\n1.236,569\n").heights[1] == pytest.approx(571e-9)
+
+
+@pytest.mark.parametrize("mark", ["-9999", "9999.0", "-99999", "-32768"])
+def test_what_files_are_filled_with_is_doubted_near_others(read, mark):
+    """Heights of some 100 nm in nm: a mark is not 300 of their spread away."""
+    lines = rows("{x:.2f};{a:.1f}").splitlines()
+    lines[5] = f"1.25;{mark}"
+    with pytest.warns(OutOfRangeWarning, match="If it marks what is missing, write NaN there"):
+        read("x (um);z (nm)\n" + "\n".join(lines))

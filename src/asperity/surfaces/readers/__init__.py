@@ -12,8 +12,9 @@ from asperity.arguments import require, shown, whole
 from asperity.errors import InputError, MissingPointsWarning, percent
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.readers import arrays, guards, iso_25178, matlab, text
-from asperity.surfaces.readers.belief import judge_sizes
+from asperity.surfaces.readers.belief import doubt_depth, judge_sizes
 from asperity.surfaces.readers.formats import SurfaceFormat
+from asperity.surfaces.readers.headings import is_depth
 from asperity.surfaces.readers.hints import Hints, Length, advice, checked_hints, spell
 from asperity.surfaces.readers.libraries import CLASSIC, read_apart
 from asperity.written_numbers import count_of
@@ -167,6 +168,9 @@ def _read(path: str | Path, hints: Hints) -> list[guards.Surface]:
     with guards.hostile(file.name, kind):
         surfaces = _read_by(reader, file, hints)
     judge_sizes(surfaces[0], hints)
+    source, _, name = surfaces[0].source.partition(":")
+    if is_depth(name):
+        doubt_depth(source, name)
     return surfaces
 
 

@@ -37,6 +37,10 @@ MOST_POINTS = 2**20
 """Points of which slopes are taken."""
 APART = 300.0
 """Least distance of a height from all others, in their spread, that marks a missing point, or is wrong."""
+APART_OF_MARKS = 10.0
+"""The same where its digits are those of a mark."""
+MARKS = {"9.99000", "9.99900", "9.99990", "9.99999", "3.27680", "3.27670"}
+"""Digits of -999, 9999, -32768 and their like, which files of heights are filled with."""
 FEWEST_POINTS = 30
 """Points whose slopes prove nothing."""
 _NORMAL = 1.4826
@@ -98,6 +102,14 @@ def judge_sizes(surface: HeightMap | Profile, hints: Hints) -> None:
         OutOfRangeWarning.warn(f"{what}: {found}, usual are {usual}. {remedy}")
     elif isinstance(surface, HeightMap) and 0.0 < field <= USUAL_FIELDS and not surface.holds_lines:
         _doubt_roughness(surface, what)
+
+
+def doubt_depth(source: str, name: str) -> None:
+    """Warn of heights that bear the name of depths, whose sign may be the other."""
+    OutOfRangeWarning.warn(
+        f"{source}: {name[:60]!r} is taken for heights, positive out of the material. If it counts into the "
+        "material, change its sign in the file."
+    )
 
 
 def _doubt_roughness(surface: HeightMap, what: str) -> None:
@@ -166,7 +178,7 @@ def _far_from_others(heights: Array) -> str:
     middle = float(np.median(sample)) if sample.size else 0.0
     spread = _NORMAL * float(np.median(np.abs(sample - middle))) if sample.size else 0.0
     for end in (float(np.fmin.reduce(flat)), float(np.fmax.reduce(flat))) if spread else ():
-        if abs(end - middle) <= APART * spread:
+        if abs(end - middle) <= (APART_OF_MARKS if _is_mark(end) else APART) * spread:
             continue
         half = 0.5 * (end + middle)
         far = flat[flat > half if end > middle else flat < half]
@@ -175,6 +187,11 @@ def _far_from_others(heights: Array) -> str:
             received = f"{points} the height {told_length(end)}, where others spread by {told_length(spread)}"
             return f"{received}. If it marks what is missing, write NaN there."
     return ""
+
+
+def _is_mark(height: float) -> bool:
+    """Whether a height, m, is by its digits one that files are filled with, in any unit by tens."""
+    return f"{abs(height):.5e}".partition("e")[0] in MARKS
 
 
 def _thousands(ratio: float) -> float:

@@ -61,8 +61,11 @@ _COUNT = re.compile(
 )
 _X = re.compile(r"\W*(?:x|lateral|position|pos|distance|weg|abstand|horizontal)(?![a-z0-9])", re.IGNORECASE)
 _Y = re.compile(r"\W*y(?![a-z0-9])", re.IGNORECASE)
+_DEPTHS = "depths?|tiefen?|profondeurs?|profondità|profundidad(?:es)?"
+_DEPTH = re.compile(rf"\W*(?:{_DEPTHS})(?![a-z])", re.IGNORECASE)
 _Z = re.compile(
-    r"\W*(?:z\d*|heights?|höhe|hoehe|hauteur|altezza|altura|profile?|raw|total[ _]profile)(?![a-z])",
+    rf"\W*(?:z\d*|heights?|höhe|hoehe|hauteur|altezza|altura|profile?|raw|total[ _]profile|{_DEPTHS})"
+    r"(?![a-z])",
     re.IGNORECASE,
 )
 """Titles of the places and of the heights of points."""
@@ -176,6 +179,24 @@ def columns_of_heights(table: Array, titles: list[Title]) -> tuple[Array, list[T
         if not any(_LENGTH.fullmatch(titles[place].unit) for place in others):
             kept = [*found[0], *found[1], *valid, *found[2]]
     return (table[:, kept], [titles[place] for place in kept]) if kept else (table, titles)
+
+
+def depth_named(lines: Sequence[str], titles: list[Title], delimiter: str | None, columns: int) -> str:
+    """Title of heights that is one of depths; empty of any other.
+
+    Titles are those of columns that are taken; without any, lines above the numbers are looked at.
+    """
+    if titles:
+        names = [titles[-1].name]
+    else:
+        short = (line for line in lines if len(line) <= MOST_TITLE * columns)
+        names = [cells[-1] for line in short if (cells := _cells(line, delimiter, columns))]
+    return next((name for name in names if _DEPTH.match(name)), "")
+
+
+def is_depth(name: str) -> bool:
+    """Whether the name of an array of heights is one of depths."""
+    return bool(_DEPTH.match(re.split(r"[/.]", name)[-1]))
 
 
 def _counts(numbers: Array) -> bool:

@@ -16,9 +16,11 @@ from asperity.errors import InputError
 from asperity.files import amount
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.readers import guards, positions
+from asperity.surfaces.readers.belief import doubt_depth
 from asperity.surfaces.readers.headings import (
     Title,
     columns_of_heights,
+    depth_named,
     length_named,
     parsed_header,
     titles_of,
@@ -26,7 +28,15 @@ from asperity.surfaces.readers.headings import (
     without_invalid,
 )
 from asperity.surfaces.readers.hints import Hints, advice, spell
-from asperity.text_files import blocks_of_lines, decoded, even_rows, lines_in, number_in, read_text
+from asperity.text_files import (
+    blocks_of_lines,
+    decoded,
+    even_rows,
+    in_thousands,
+    lines_in,
+    number_in,
+    read_text,
+)
 from asperity.written_numbers import count_of
 
 MISSING = {"", "nan", "bad", "na", "n/a", "#n/a", "n.a.", "#nv", "null", "none", "void", "lost", "missing",
@@ -43,7 +53,7 @@ SAMPLE = 50  # ... so many lines of numbers tell how they are written
 PIECE = 1 << 16  # fields of a long line that are split off at a time
 
 _CHECK = "Check the file and its separators."
-_NUMERIC = re.compile(r"(?:[\d\s.,;+\-eE*]++|nan|bad|null|none|na|n/a)*+", re.IGNORECASE)
+_NUMERIC = re.compile(r"(?:[\d\s.,;+\-eEdD*'’]++|nan|bad|null|none|na|n/a)*+", re.IGNORECASE)
 _SURE_COMMA = re.compile(r"[-+]?\d+,0\d|-0,")
 """A decimal comma: nobody writes whole numbers as 05 or -0."""
 _QUOTED_COMMA = re.compile(r'"[-+]?\d*,\d[^"\n]*"')
@@ -109,13 +119,16 @@ def read(path: Path, hints: Hints) -> list[guards.Surface]:
     remedy = "Crop or split the measurement, or save it as .npy, netCDF or X3P."
     require(size <= MAX_TEXT_BYTES, f"size of {path.name}", amount(size), allowed, remedy)
     content = _unquoted(read_text(path, path.name, "heights as text", largest=size, latin=True))
-    dialect = _dialect(_last_numbers(content), hints.decimal, path.name)
+    sample = _last_numbers(content)
+    dialect = _dialect(sample, hints.decimal, path.name)
     header_lines, table = _table(content, dialect, path.name)
     table = guards.without_marks(table)
     all_titles = titles_of(header_lines, dialect.delimiter, table.shape[1])
     table, titles = columns_of_heights(table, all_titles)
     source = path.name + _columns_told(all_titles, titles)
     table, titles = without_invalid(table, titles)
+    if name := depth_named(header_lines, titles, dialect.delimiter, table.shape[1]):
+        doubt_depth(path.name, name)
     if (units := units_of_lines(titles)) is not None:
         return _lines(table, *units, hints, source)
     header = parsed_header(header_lines, titles)
@@ -126,6 +139,10 @@ def read(path: Path, hints: Hints) -> list[guards.Surface]:
     try:
         return _surfaces(table, header, hints, source)
     except InputError as error:
+        if (
+            table.shape[1] == 2 and dialect.delimiter == ","
+        ):  # or one number, of thousands and a decimal comma
+            _refuse_thousands("\n".join(sample), None, path.name)
         if error.received != positions.UNEVEN or "dx" not in header or "z" not in header:
             raise
     heights = table * hints.heights_in(source, header["z"])  # lines without their positions
@@ -211,6 +228,14 @@ def _dialect(sample: list[str], decimal: str | None, source: str) -> Dialect:
     raise InputError(source, received, allowed, remedy)
 
 
+def _refuse_thousands(text: str, delimiter: str | None, source: str) -> None:
+    """Refuse a line with numbers that have marks between thousands: which comma is which is not guessed."""
+    if word := in_thousands(text.split(delimiter)):
+        received = f"numbers such as {word.strip()[:40]!r}, with marks between thousands"
+        allowed = "numbers with a decimal mark alone"
+        raise InputError(source, received, allowed, "Export them without marks between thousands.")
+
+
 def _table(content: str, dialect: Dialect, source: str) -> tuple[list[str], Array]:
     """Read lines above and among the numbers, and the numbers (rows, columns)."""
     table = _Table(dialect, source)
@@ -256,6 +281,8 @@ class _Table:
             return
         row = None if comment else self.dialect.numbers(text)
         if row is None:
+            if not comment:
+                _refuse_thousands(text, self.dialect.delimiter, self.source)
             if columns and not comment:
                 received = f"{text.strip()[:60]!r} in line {number}"
                 allowed = "numbers or marks of missing ones"
