@@ -3,6 +3,7 @@
     python benchmarks/cell_rims.py            # the curves, as they stand in the kernel
     python benchmarks/cell_rims.py --check    # against Hertz, 4 to 24 cells, balls and ellipses
     python benchmarks/cell_rims.py --rough    # rough balls against grids four times as fine
+    python benchmarks/cell_rims.py --choice   # where covered cells serve better than whole ones: `LARGEST`
     python benchmarks/cell_rims.py --cost     # time and iterations against those of whole cells, in turn
 
 The contact of a ball on a half-space is known in closed form: half-width, approach, radius and modulus E*
@@ -29,7 +30,11 @@ from asperity.contact.scan import ScanJob, scan_forces
 from asperity.kernels.batched import convolve_padded, padded_spectrum
 from asperity.kernels.influence import means_table
 from asperity.kernels.rims import END, KNOTS, PER_UNIT, SLANTS, cubics
+from asperity.scenarios.geometry import Geometry
+from asperity.scenarios.rim_cells import roughness_within
+from asperity.surfaces.cell_means import cell_means
 from asperity.surfaces.strip import Rows
+from asperity.surfaces.synthesis import self_affine
 
 BALLS = {6: 60, 8: 50, 12: 50, 16: 40, 24: 30, 40: 14}
 """Cells in the half-width, at least, and how many balls."""
@@ -191,12 +196,17 @@ def rough_ball(fine, across, height, seed, times=4):
     """Gap of a ball with waves of its half-width and less, on a grid of so many parts of a cell."""
     count = (math.ceil(3.2 * across) + 2) * times
     x = (np.arange(count) - 0.5 * count + 0.3) * fine
+    return 0.5 * np.add.outer(x**2, x**2) + rough_waves(x, height, seed)
+
+
+def rough_waves(x, height, seed):
+    """Waves of a half-width and less on points x squared, of an rms height."""
     rng = np.random.default_rng(seed)
     waves = sum(
         rng.normal() * np.cos(np.add.outer(k * x, m * x) + 6.3 * rng.random())
         for k, m in rng.normal(0.0, 5.0, (30, 2))
     )
-    return 0.5 * np.add.outer(x**2, x**2) + height * waves / math.sqrt(15.0)
+    return height * waves / math.sqrt(15.0)
 
 
 def check_rough():
@@ -227,6 +237,67 @@ def check_rough():
             rms = {name: 100.0 * np.sqrt(np.mean(kept, axis=0)) for name, kept in errors.items()}
             columns = [rms[name][i] for i in (0, 1) for name in ("covered", "whole")]
             print(f"| {height} | {across} | " + " | ".join(f"{c:.2f}" for c in columns) + " |", flush=True)
+
+
+PARTED = 5
+"""Parts of a cell of the grids that are compared with: odd, so that the points of both are the same."""
+
+
+def textures_of_patch(count, fine, height, seed):
+    """Textures of a ball's contact, by name, on points that are so far apart; rms height in approaches.
+
+    Waves of a Gaussian spectrum, down to 0.4 half-widths, and self-affine ones as grids are chosen for: from
+    two half-widths to four of nine cells.
+    """
+    grid, lengths = (fine, fine), {"longest": 2.0, "shortest": 4.0 / 9.0}
+    affine = self_affine((count, count), grid, rms=height, hurst=0.8, **lengths, seed=seed).heights
+    x = (np.arange(count) - 0.5 * (count - 1)) * fine
+    short = rough_waves(x, height, seed)
+    return {"short waves": short, "self-affine": affine * height / affine.std()}
+
+
+def check_choice(seeds=6):
+    """Print force and stiffness of rough balls on covered and whole cells, as cases lay them, about 0.05."""
+    print("| texture | rms / approach | cells | within | F, rms, %: covered | whole | k: covered | whole |")
+    print("|---|---|---|---|---|---|---|---|")
+    approaches = np.linspace(0.8, 1.2, 13)
+    for name in ("short waves", "self-affine"):
+        for height in (0.03, 0.05, 0.07, 0.1, 0.2):
+            for across in (6, 9):
+                errors, within = {"covered": [], "whole": []}, []
+                for seed in range(seeds):
+                    side = 1.0 / across
+                    points = 2 * math.ceil(1.6 * across) + 3
+                    x = (np.arange(PARTED * points) - 0.5 * (PARTED * points - 1)) * side / PARTED
+                    texture = textures_of_patch(len(x), side / PARTED, height, seed)[name]
+                    gap = 0.5 * np.add.outer(x**2, x**2) + texture
+                    middle = slice(PARTED // 2, None, PARTED)
+                    ball = Geometry(
+                        gap[middle, middle], (side, side), 1.0, Hertz(1.0, 1.0, 1.0), 4.0 / 3.0, 4.0
+                    )
+                    within.append(roughness_within([-texture[middle, middle]], ball))
+                    grids = {"fine": (gap, "covered"), "covered": (cell_means(ball.body), "covered")}
+                    grids["whole"] = (ball.body, "whole")
+                    forces = {
+                        kind: forces_of(*grid, side * points, approaches) for kind, grid in grids.items()
+                    }
+                    for kind, kept in errors.items():
+                        steps = np.diff(forces[kind]) / np.diff(forces["fine"]) - 1.0
+                        kept.append([np.mean((forces[kind] / forces["fine"] - 1.0) ** 2), np.mean(steps**2)])
+                rms = {kind: 100.0 * np.sqrt(np.mean(kept, axis=0)) for kind, kept in errors.items()}
+                columns = [f"{rms[kind][i]:.2f}" for i in (0, 1) for kind in ("covered", "whole")]
+                row = f"| {name} | {height} | {across} | {np.mean(within):.3f} | "
+                print(row + " | ".join(columns) + " |", flush=True)
+
+
+def forces_of(gap, cells, width, approaches):
+    """Forces at approaches of a gap on cells that fill a width."""
+    space, start, forces = HalfSpace(gap.shape, width / len(gap), 1.0, cells=cells), None, []
+    for approach in approaches:
+        solved = space.solve(np.ascontiguousarray(gap), approach=approach, start=start, rtol=1e-7)
+        start = solved.pressure
+        forces.append(solved.force)
+    return np.array(forces)
 
 
 def cost(rounds=7):
@@ -263,7 +334,7 @@ def cost(rounds=7):
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    work = {"check": check, "rough": check_rough, "cost": cost}
+    work = {"check": check, "rough": check_rough, "choice": check_choice, "cost": cost}
     chosen = parser.add_mutually_exclusive_group()
     for name, function in work.items():
         chosen.add_argument(f"--{name}", dest="work", action="store_const", const=function)

@@ -122,7 +122,7 @@ def _both(
     prepared: ReadyCase, base: xarray.Dataset, setting: Setting, way: Way, progress: Progress
 ) -> tuple[xarray.Dataset, xarray.Dataset]:
     """Levels of the finer and of the coarser computation; `base` are those of the case."""
-    case = prepared.case.with_(**way.changes)
+    case = prepared.case.with_(**_as_chosen(prepared), **way.changes)
     changed: ReadyCase = function_named(case.PREPARED_BY)(case, "case")
     if not setting.laid_anew:
         return _levels(changed.case, "", lambda: changed, progress), base
@@ -136,12 +136,20 @@ def _both(
     return _levels(changed.case, "", lambda: changed, progress), twin
 
 
+def _as_chosen(prepared: ReadyCase) -> dict[str, str]:
+    """Cells at rims as they were chosen for a case: a grid is compared with one of the same kind."""
+    if not isinstance(prepared, PreparedCase) or prepared.case.contact.rim_cells != "auto":
+        return {}
+    return {"contact.rim_cells": prepared.shape.cells}
+
+
 def on_the_surface_of(small: PreparedCase, large: PreparedCase) -> PreparedCase:
     """A case on the textures of a finer or wider one, restricted to its own grid and window."""
     spacing = large.case.contact.spacing
     every = round(small.case.contact.spacing / spacing)
     lines = window_cells(small.case.contact)
-    return replace(small, textures=restricted(large.textures, spacing, every, lines))
+    points = restricted(large.textures.points or large.textures, spacing, every, lines)
+    return replace(small, textures=points.over_cells() if small.shape.cells == "covered" else points)
 
 
 def _levels(

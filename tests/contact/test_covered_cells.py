@@ -1,6 +1,7 @@
 """Cells at the rim of a contact that count as far as they are covered: against Hertz and finer grids."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -8,8 +9,10 @@ import pytest
 from asperity import HalfSpace, Hertz, run
 from asperity.contact.batched import processor, solve_batched
 from asperity.kernels import rims
+from asperity.reporting.contact_figures import contact_pressure
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.rim_cells import stiffness_missed
+from asperity.studies.member import kept
 from refusals import refusals
 from small_cases import changed
 
@@ -89,9 +92,16 @@ def test_a_load_and_its_approach_belong_together():
 def test_a_case_of_covered_cells_rolls_by_table_as_by_direct():
     """On a texture of a hundredth of the approach, where both see the slope of a ball on a plane."""
     surface = {"rms": "2 nm", "longest": "0.4 mm", "shortest": "80 um"}
-    contact = {"spacing": "20 um", "window": "0.5 mm", "samples": 1, "rim_cells": "covered"}
+    contact = {"spacing": "20 um", "window": "0.5 mm", "samples": 1, "rim_cells": "auto"}
     of = {"laws": ["table", "direct"], "duration": "4 ms", "surface": surface, "contact": contact}
-    force = run(changed("ball-on-beam", **of))["rolling/contact_force"]
+    tree = run(changed("ball-on-beam", **of))
+    told = tree["contact"].attrs
+    assert told["rim_cells"] == "covered"
+    assert re.fullmatch(r"the texture has 0\.0\d+ approaches rms .*, up to 0\.05", told["rim_cells_chosen"])
+    assert kept(tree).attrs["rim_cells"] == "covered"
+    count = f"Cells at rims count as covered: {told['rim_cells_chosen']}."
+    assert count in contact_pressure.drawn(tree).caption
+    force = tree["rolling/contact_force"]
     table, direct = (force.sel(law=law).values for law in ("table", "direct"))
     assert np.sqrt(np.mean((table - direct) ** 2)) < 0.03 * direct.std()
 

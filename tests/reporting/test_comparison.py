@@ -49,6 +49,14 @@ def finite(found):
     return found.values[np.isfinite(found.values)]
 
 
+def test_cells_at_rims_that_were_chosen_otherwise_are_told(first):
+    runs = [first.copy(deep=True) for _ in range(2)]
+    for run, cells in zip(runs, ("covered", "whole"), strict=True):
+        run["contact"].attrs["rim_cells"] = cells
+    told = {"key": "contact.rim_cells", "note": "chosen by the texture", "values": ["covered", "whole"]}
+    assert comparison_of(runs, ["a", "b"]).keys == [told]
+
+
 def test_a_run_does_not_differ_from_itself(first):
     found = comparison_of([first, first], ["a", "b"])
     for name in found.table.data_vars:

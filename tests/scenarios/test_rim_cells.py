@@ -1,18 +1,25 @@
 """Cells at the rim of a case's contact: what `contact.rim_cells` reaches, and when a case needs it."""
 
 import math
+import re
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import xarray
 
+from asperity.cli.running import plan
+from asperity.convergence import _as_chosen, on_the_surface_of
 from asperity.errors import Grade, InputError
 from asperity.running import prepare_case
 from asperity.scenarios import problems, rim_cells
 from asperity.scenarios.laws import ReducedCase
+from asperity.scenarios.preparing import Work
 from asperity.scenarios.reducing import samples_of
+from asperity.scenarios.refining import settings_for
 from asperity.scenarios.textures import textures_under
 from asperity.scenes.validity import _whole_cells
+from asperity.studies.table import _of_cells
 from asperity.surfaces.cell_means import MeansOverCells, cell_means
 from asperity.surfaces.strip import Rows
 from small_cases import changed
@@ -87,6 +94,66 @@ def test_a_device_takes_whole_cells_alone(monkeypatch):
     prepared(cells="whole")
 
 
+def chosen(rms, **keys):
+    keys = {"laws": ["areal", "table"], "contact": {"samples": 2}} | keys
+    return prepared(cells="auto", surface={"rms": f"{rms} um", "longest": "0.4 mm"}, **keys)
+
+
+def test_the_texture_chooses_cells_at_rims():
+    """The heights within the patch are a part of the rms, over an approach of 0.89 µm."""
+    for rms, cells, side in ((0.02, "covered", "up to"), (0.5, "whole", "more than")):
+        made = chosen(rms)
+        surface = {"rms": f"{rms} um", "longest": "0.4 mm"}
+        given = prepared(cells=cells, surface=surface, laws=["areal", "table"], contact={"samples": 2})
+        assert made.shape.cells == given.shape.cells == cells
+        np.testing.assert_array_equal(made.shape.body, given.shape.body)
+        np.testing.assert_array_equal(whole(made.textures.path), whole(given.textures.path))
+        for one, other in zip(made.textures.maps, given.textures.maps, strict=True):
+            np.testing.assert_array_equal(one.heights, other.heights)
+        within = float(re.match(r"the texture has ([\d.]+) approaches rms", made.rims)[1])
+        assert 0.2 < within * made.shape.hertz.approach(made.shape.load) / (1e-6 * rms) < 1.0
+        assert made.rims.endswith(f"within the contact, {side} 0.05")
+        assert given.rims == ""
+
+
+def test_cells_are_whole_where_covered_ones_are_not_known(monkeypatch):
+    keys = {"kind": "wheel-on-rail", "duration": "5 ms", "wheel": {"load": "50 kN"}}
+    rail = {"spectrum": "iso3095", "lateral": 1.0}
+    assert prepared(**keys, cells="auto", surface=rail).shape.cells == "covered"
+    joint = prepared(**keys, cells="auto", surface=rail | {"joint_depth": "1 mm", "joint_length": "0.5 m"})
+    assert (joint.shape.cells, joint.rims) == ("whole", "covered ones have not been held to flats and joints")
+    monkeypatch.setattr(rim_cells, "find_device", lambda: "a device")
+    made = chosen(0.02)
+    assert (made.shape.cells, made.rims) == ("whole", "the device gpu has no others")
+
+
+def test_what_was_chosen_is_told_before_the_run():
+    rows = dict(plan(chosen(0.02), Work({}, {}, 0, None)))
+    assert rows["cells at rims"].startswith("covered: the texture has 0.")
+    assert "cells at rims" not in dict(plan(prepared(cells="whole"), Work({}, {}, 0, None)))
+
+
+def test_a_grid_is_compared_on_means_over_its_own_cells():
+    small = chosen(0.02)
+    finer = settings_for(small, np.linspace(-1e-6, 3e-6, 5))[0].ways[0].changes
+    large = prepare_case(small.case.with_(**_as_chosen(small), **finer))
+    assert large.case.contact.rim_cells == large.shape.cells == "covered"
+    found = whole(on_the_surface_of(small, large).textures.path)
+    points = whole(large.textures.points.path)
+    first, beside = large.textures.before % 2, points.shape[1] // 2 % 2
+    expected = cell_means(points[first::2, beside::2])
+    np.testing.assert_array_equal(found, expected)
+    assert _as_chosen(prepared(cells="whole")) == {}
+
+
+def test_a_study_tells_that_its_members_have_unlike_cells():
+    of = [xarray.Dataset(attrs={"rim_cells": cells}) for cells in ("covered", "whole", "covered")]
+    (told,) = _of_cells([*of, xarray.Dataset()])
+    assert told["message"].startswith("cells at rims are covered in 2 members and whole in 1, ")
+    assert (told["category"], told["members"]) == ("CoarseSamplingWarning", 3)
+    assert not list(_of_cells(of[::2]))
+
+
 def doubts(rms, cells="whole", laws=("areal", "direct"), **keys):
     """What is doubted of a grid of about nine cells in the half-width of a ball's contact."""
     surface = {"rms": f"{rms} um", "longest": "0.4 mm", "shortest": "60 um"}
@@ -127,6 +194,7 @@ def test_the_texture_within_the_patch_is_that_about_a_plane():
     a = made.shape.semi_axes[0]
     x = dx * np.arange(-(nx // 2), nx // 2 + 1)[:, None] + 0.0 * made.shape.body
     gap = made.shape.body - (2e-3 * x**2 / a + 0.3 * x)
-    pressed = SimpleNamespace(contacts=[SimpleNamespace(undeformed_gap=gap)])
     expected = 2e-3 * a * math.sqrt(1 / 8 - 1 / 16) / made.shape.hertz.approach(made.shape.load)
-    assert rim_cells.roughness_within(pressed, made.shape) == pytest.approx(expected, rel=0.05)
+    assert rim_cells.roughness_within([made.shape.body - gap], made.shape) == pytest.approx(
+        expected, rel=0.05
+    )

@@ -35,6 +35,8 @@ OF_CONTACT = (*_WORKING, contact.CONTACT_AREA_RATIO)
 """Attributes of the reduced contact that are compared."""
 RATIOS = (contact.WORKING_STIFFNESS.name, "stiffness", bearing.BAND_VELOCITY.name)
 """Quantities of which 20 lg of the ratio is told in place of the difference."""
+CHOSEN_CELLS = "contact.rim_cells"
+"""Key of which runs may differ where none gives it: `contact.RIM_CELLS` says what was chosen."""
 Variables = dict[str, xarray.Variable]
 Curve = tuple[chart.Numbers, chart.Numbers]
 
@@ -144,6 +146,10 @@ def _differing_keys(runs: Sequence[NamedRun]) -> list[dict[str, Any]]:
         if len(set(map(str, written))) > 1:
             note = next(str(items[key].get("note", "")) for items in held if key in items)
             found.append({"key": key, "note": note, "values": written})
+    if not any(item["key"] == CHOSEN_CELLS for item in found):
+        cells = [data.stated(run.tree, contact.RIM_CELLS) for run in runs]
+        if len({*cells} - {None}) > 1:
+            found.append({"key": CHOSEN_CELLS, "note": "chosen by the texture", "values": cells})
     of_kinds = any(item["key"] == provenance.KIND.name for item in found)
     return [item for item in found if not of_kinds or None not in item["values"]]
 

@@ -76,7 +76,9 @@ def contact_pressure(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     if area and (semi_axes := _semi_axes(tree)):
         parts[-1] += f" ({100 * area / (np.pi * semi_axes[0] * semi_axes[1]):.0f} % of Hertz's)"
     parts.append(f"highest pressure {data.engineering(float(np.nanmax(pressure)), 'Pa')}")
-    yield f"First sample at the working load: {'; '.join(parts)}."
+    cells, why = (data.stated(tree, each) for each in (contact.RIM_CELLS, contact.RIM_CELLS_CHOSEN))
+    chosen = f" Cells at rims count as {cells}: {why}." if why else ""
+    yield f"First sample at the working load: {'; '.join(parts)}.{chosen}"
 
 
 # --- force and stiffness over the approach

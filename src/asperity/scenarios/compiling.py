@@ -24,7 +24,7 @@ from asperity.threads import processors
 CONTACT = "asperity.kernels.scanning.solve_positions"
 BESIDE = (
     "from asperity.sandbox import end_with_parent; end_with_parent(); "
-    "from asperity.scenarios.compiling import press_once; press_once()"
+    "from asperity.scenarios.compiling import press_once; press_once('{}')"
 )
 """What a second process does: half of all compilation, so that a first demo takes two thirds of the time."""
 PATIENCE = 300.0  # s that it is waited for
@@ -33,19 +33,20 @@ ROLLING_TIME, CONTACT_TIME = 14.0, 21.0
 """Processor times of compiling what rolls, and the contact, s, at a pace of one."""
 
 
-def compile_kernels(progress: Progress, cells: str = "whole") -> None:
+def compile_kernels(progress: Progress, *kinds: str) -> None:
     """Call every kernel once on next to nothing: it is compiled now, or loaded from disk.
 
-    The contact of such cells, too, as in `HalfSpace`.
+    Contacts are those of kinds of cells, as in `HalfSpace`; whole ones where none are named.
     """
-    with PhysicsWarning.ignored(), _contact_compiled_beside() as other:
+    cells = kinds or ("whole",)
+    with PhysicsWarning.ignored(), _contact_compiled_beside(cells[0]) as other:
         progress(0, 2, COMPILED)
         roll_once()
         progress(1, 2, COMPILED)
         if other is not None:
             with suppress(subprocess.TimeoutExpired):
                 other.wait(PATIENCE)
-        for kind in dict.fromkeys(("whole", cells)):
+        for kind in cells:
             press_once(kind)
         progress(2, 2, COMPILED)
 
@@ -57,13 +58,13 @@ def time_to_compile() -> float:
 
 
 @contextmanager
-def _contact_compiled_beside() -> Iterator[subprocess.Popen[bytes] | None]:
+def _contact_compiled_beside(cells: str = "whole") -> Iterator[subprocess.Popen[bytes] | None]:
     """Compile the contact in a second process, unless it is on disk or no process can be started."""
     other = None
     null = subprocess.DEVNULL
     if processors() > 1 and not is_kept(CONTACT):
         environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
-        command = [sys.executable, "-W", "ignore", "-c", BESIDE]
+        command = [sys.executable, "-W", "ignore", "-c", BESIDE.format(cells)]
         with suppress(OSError):  # as inside another program
             other = subprocess.Popen(
                 command, env=environment, stdin=subprocess.PIPE, stdout=null, stderr=null

@@ -90,6 +90,10 @@ class Geometry:
         side = window_for(self.body, self.spacing, highest + kept_out + datum)
         return f'contact.window = "{rounded(side * 1e3)} mm" holds them.'
 
+    def over_cells(self) -> "Geometry":
+        """The same gap as means over its cells, which at rims count as far as they are covered."""
+        return replace(self, body=cell_means(self.body), cells="covered")
+
     def within_window(self) -> "Geometry":
         """Bound the states by a contact that the window holds."""
         held = max(FILLED**3 * self.filling_force, self.load)
@@ -138,9 +142,7 @@ def geometry_of(case: scene.Case) -> Geometry:
     elif body.profile is not None or over.profile is not None or case.meeting is not None:
         section, hertz = _measured_gap(case, hertz, load)
     gap = parabola(contact, hertz.radius_x)[:, None] + section[None, :]
-    if contact.rim_cells == "covered":
-        gap = cell_means(gap)
-    shape = Geometry(gap, (h, h), hertz.modulus, hertz, load, load, contact.rim_cells)
+    shape = Geometry(gap, (h, h), hertz.modulus, hertz, load, load)
     carried = math.inf if contact.hardness is None else contact.hardness * h**2 * gap.size
     of_class = HIGHEST_FORCE * shape.class_load
     shape = replace(shape, largest_force=of_class if of_class < carried else HIGHEST_FORCE * load)

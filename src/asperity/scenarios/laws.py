@@ -72,7 +72,7 @@ class ReducedCase(PreparedCase):
             spec, contact.damping, shape.load, shape.hertz.stiffness_constant, shape.modulus,
             working_point(contact, shape, self.reduction), self.textures.start, shape.body, shape.spacing,
             contact.hardness, case.numerics.rtol, case.law_parameters(spec.name), made_by,
-            contact.rim_cells,
+            shape.cells,
         )  # fmt: skip
 
     @cached_property

@@ -33,6 +33,7 @@ from asperity.scenarios.coverage import problems_of_coverage
 from asperity.scenarios.doubts import doubt_sizes
 from asperity.scenarios.geometry import geometry_of, window_cells
 from asperity.scenarios.problems import by_key, problems, refuse
+from asperity.scenarios.rim_cells import with_rims
 from asperity.scenarios.scanned_positions import table_stride
 from asperity.scenarios.scanned_states import states_expected
 from asperity.scenarios.scene import PreparedCase, scene_of
@@ -65,6 +66,7 @@ def prepare(case: Case, source: str = "case") -> PreparedCase:
         if (smaller := _within_the_map(case, prepared.textures)) is not None:
             return prepare(smaller, source)
         refuse([*problems(prepared), *_problem_of_disk(prepared)], source)
+        prepared = with_rims(prepared)
         warn_of_textures(case, prepared.shape, prepared.textures)
         doubt_sizes(case, prepared.scene.over)
         refuse(list(problems_of_coverage(case, prepared.textures)), source)
@@ -314,7 +316,7 @@ def expect(prepared: PreparedCase, progress: Progress) -> Work:
     doubt_deflection(prepared)
     with one_thread_in_linear_algebra():
         if prepared.textures.maps:
-            compiling.compile_kernels(progress, case.contact.rim_cells)
+            compiling.compile_kernels(progress, prepared.shape.cells)
             trial = try_contacts(prepared, progress)
     scans = scan_sizes(prepared)
     steps = round((case.settled_time + case.rolled_time) / case.time_step)

@@ -1,9 +1,23 @@
-"""How much the grid of a contact matters: the stiffness of whole cells, which jumps as cells enter."""
+"""How cells at the rim of a contact count, and how much that matters: whole ones let the stiffness jump."""
+
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
+from asperity.arguments import Array
+from asperity.contact.batched import find_device
 from asperity.scenarios.geometry import Geometry
-from asperity.scenarios.reducing import PressedSamples
+from asperity.scenarios.reducing import samples_of
+from asperity.scenarios.scene import PreparedCase
+from asperity.written_numbers import rounded
+
+ROUGHEST_COVERED = 0.05
+"""Rms height within the patch, in approaches, up to which covered cells are chosen.
+
+With nine in the half-width, force and stiffness are nearer to those of finer grids than on whole cells up to
+0.08 where waves are short, farther where they are not: ``benchmarks/cell_rims.py --choice``.
+"""
 
 SMOOTH = 0.1
 """Rms height within the patch, in approaches, below which few cells enter as the force varies."""
@@ -15,6 +29,35 @@ From ``benchmarks/cell_rims.py --check``.
 """
 
 
+def with_rims(prepared: PreparedCase) -> PreparedCase:
+    """The case with means over its cells where those at rims count as far as they are covered."""
+    cells = prepared.case.contact.rim_cells
+    why = ""
+    if cells == "auto":
+        cells, why = _chosen(prepared)
+    if cells == "whole":
+        return replace(prepared, rims=why)
+    return replace(
+        prepared, shape=prepared.shape.over_cells(), textures=prepared.textures.over_cells(), rims=why
+    )
+
+
+def _chosen(prepared: PreparedCase) -> tuple[str, str]:
+    """Kind of cells that suits a case, and why."""
+    case, shape, maps = prepared.case, prepared.shape, prepared.textures.maps
+    if not maps:
+        return "whole", "no contact is solved on them"
+    if case.has_defect:
+        return "whole", "covered ones have not been held to flats and joints"
+    if find_device() is not None:
+        return "whole", "the device gpu has no others"
+    within = roughness_within(samples_of(case, shape, maps, shape.class_axes), shape)
+    smooth = within <= ROUGHEST_COVERED
+    side = "up to" if smooth else "more than"
+    why = f"the texture has {rounded(within, 2)} approaches rms within the contact, {side} {ROUGHEST_COVERED}"
+    return "covered" if smooth else "whole", why
+
+
 def stiffness_missed(shape: Geometry) -> float:
     """Share by which the stiffness of a smooth contact of whole cells is off at most, under the load."""
     small, large = sorted(shape.semi_axes)
@@ -22,13 +65,13 @@ def stiffness_missed(shape: Geometry) -> float:
     return float(AT_SIX * (6.0 / cells) ** ORDER * (small / large) ** SLENDER)
 
 
-def roughness_within(pressed: PressedSamples, shape: Geometry) -> float:
-    """Rms height of samples about a plane within the nominal patch, in approaches of the smooth bodies."""
+def roughness_within(samples: Sequence[Array], shape: Geometry) -> float:
+    """Rms height of samples (nx, ny), m, about a plane within the nominal patch, in smooth approaches."""
     nx, ny = shape.body.shape
     a, b = (axis / step for axis, step in zip(shape.semi_axes, shape.spacing, strict=True))
     x, y = np.mgrid[-(nx // 2) : nx // 2 + 1, -(ny // 2) : ny // 2 + 1]
     inside = (x / a) ** 2 + (y / b) ** 2 < 1.0
     plane = np.stack([np.ones(inside.sum()), x[inside], y[inside]], axis=1)
-    heights = np.stack([(shape.body - each.undeformed_gap)[inside] for each in pressed.contacts], axis=1)
+    heights = np.stack([sample[inside] for sample in samples], axis=1)
     left = heights - plane @ np.linalg.lstsq(plane, heights, rcond=None)[0]
     return float(np.sqrt(np.mean(left**2))) / shape.hertz.approach(shape.load)

@@ -137,6 +137,7 @@ class PreparedCase:
     scene: Scene  # what rolls over what
     shape: Geometry  # the gap of the bodies on the contact grid
     textures: Textures  # what is rolled over
+    rims: str = ""  # why cells at rims count as they do, where that was chosen
     caught: tuple[warnings.WarningMessage, ...] = ()  # warnings met on the way
     seconds: dict[str, float] = field(default_factory=dict)  # wall time of each part, s
     processor: float = 0.0  # time that preparing took, s

@@ -64,6 +64,14 @@ class Textures:
     # what the random numbers of each part belong to: parts for which it is the same were drawn alike
     drawn: dict[str, str] = field(default_factory=dict)
     untouched: "Textures | None" = None  # as they were before running-in; None where they still are
+    points: "Textures | None" = None  # at the points of the grid, where these are means over its cells
+
+    def over_cells(self) -> "Textures":
+        """The same with means over cells of what is pressed; what is followed as a line is not averaged."""
+        maps = tuple(_mean_of(each) for each in self.maps)
+        strips = maps if self.strips is self.maps else tuple(_mean_of(each) for each in self.strips)
+        path = None if self.path is None else MeansOverCells(self.path)
+        return replace(self, maps=maps, strips=strips, path=path, points=self)
 
     @property
     def rms_slope(self) -> float:
@@ -157,19 +165,11 @@ def textures_of(case: Case) -> Textures:
         lines=lines,
         drawn={name: draw for name, draw in drawn.items() if draw},
     )
-    if contact.rim_cells == "covered":
-        textures = _over_cells(textures)
     return replace(textures, **_defects(case, 0, textures))
 
 
-def _over_cells(textures: Textures) -> Textures:
-    """Textures whose heights that are pressed are means over cells; what is followed as a line is not."""
-    over = [
-        tuple(replace(each, heights=cell_means(each.heights)) for each in maps)
-        for maps in (textures.maps, textures.strips)
-    ]
-    path = None if textures.path is None else MeansOverCells(textures.path)
-    return replace(textures, maps=over[0], strips=over[1], path=path)
+def _mean_of(sample: HeightMap) -> HeightMap:
+    return replace(sample, heights=cell_means(sample.heights))
 
 
 def other_contacts(case: Case, loads: Array) -> tuple[list[int], list[tuple[int, float]]]:
@@ -202,7 +202,7 @@ def textures_under(case: Case, contact: int, first: Textures) -> Textures:
     turns = [_turn(case, each, grid, seed).heights for each in (0, contact)]
     change = turns[1] - turns[0]
     middle = turns[0].shape[1] // 2
-    if case.contact.rim_cells == "covered":
+    if first.points is not None:
         change = cell_means(np.pad(change, ((1, 1), (0, 0)), mode="wrap"))[1:-1]
     along = np.arange(rows) - before
     added = (turns[1][:, middle] - turns[0][:, middle])[along % len(change)]

@@ -288,10 +288,11 @@ def _whole_cells(prepared: PreparedCase, pressed: PressedSamples) -> Iterator[Fi
     """Laws that solve the contact at each step on cells that are in contact or not: their stiffness jumps."""
     case, shape = prepared.case, prepared.shape
     solving = tuple(law for law in case.laws if spec_of(law).solved_every_step)
-    if not solving or case.contact.rim_cells != "whole":
+    if not solving or shape.cells != "whole":
         return
     missed = rim_cells.stiffness_missed(shape)
-    within = rim_cells.roughness_within(pressed, shape)
+    samples = [shape.body - each.undeformed_gap for each in pressed.contacts]
+    within = rim_cells.roughness_within(samples, shape)
     if within < rim_cells.SMOOTH:
         cells = rounded(min(shape.semi_axes) / case.contact.spacing, 2)
         level = 20.0 * math.log10(1.0 + missed)

@@ -41,6 +41,8 @@ FACTS = (
     scene.SQUEAL_GROWTH,
 )
 """Attributes of a result that are kept."""
+CHOSEN_CELLS = contact.RIM_CELLS.name
+"""Attribute of what is kept: cells at rims, where the texture of the member chose them."""
 LEVEL = "dB re"
 """Beginning of the units of levels."""
 PLACES = ("sensor", "point")
@@ -63,6 +65,9 @@ def kept(tree: xarray.DataTree) -> xarray.Dataset:
         if fact.group in tree.children and (value := tree[fact.group].attrs.get(fact.name)) is not None:
             table[fact.name] = variable((), value, fact.units, fact.meaning)
     told = (provenance.CITATIONS.name, provenance.WARNINGS.name)
+    about = tree["contact"].attrs if "contact" in tree.children else {}
+    if contact.RIM_CELLS_CHOSEN.name in about:
+        table = table.assign_attrs({CHOSEN_CELLS: about[contact.RIM_CELLS.name]})
     return table.assign_attrs({name: tree.attrs[name] for name in told})
 
 

@@ -226,7 +226,8 @@ def study(
         if not all(map(comes_with_the_program, laws)):
             return _in_this_process(waiting)
         if waiting and (case := waiting[0].case) is not None:  # once here, and not in every process
-            compile_kernels(told, case.contact.rim_cells if isinstance(case, Case) else "whole")
+            cells = case.contact.rim_cells if isinstance(case, Case) else "whole"
+            compile_kernels(told, *(("whole", "covered") if cells == "auto" else (cells,)))
         return locally(waiting, workers)
 
     with shown_progress(progress) as told:

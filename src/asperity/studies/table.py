@@ -2,7 +2,8 @@
 
 import json
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import product
 from typing import Any
 
@@ -12,13 +13,14 @@ import xarray
 from asperity import __version__
 from asperity.arguments import NDArray, nearest, shown
 from asperity.case.form import described_value
-from asperity.errors import InputError
+from asperity.errors import CoarseSamplingWarning, Grade, InputError
 from asperity.reporting.data import typed_unit, typed_values
 from asperity.results import variable
 from asperity.scenes.schema import SHOWN, TOTALS
 from asperity.schema import bearing, contact, rolling, spectra
 from asperity.studies.definition import Member, Study
-from asperity.studies.member import Failure, names_kept
+from asperity.studies.member import CHOSEN_CELLS, Failure, names_kept
+from asperity.written_numbers import count_of
 
 
 def tabulated(
@@ -118,7 +120,20 @@ def _warnings(tables: Sequence[xarray.Dataset]) -> list[dict[str, Any]]:
         for kind, warning in met.items():
             start = {key: warning[key] for key in ("category", "message", "grade") if key in warning}
             groups.setdefault(kind, start | {"members": 0})["members"] += 1
-    return list(groups.values())
+    return [*_of_cells(tables), *groups.values()]
+
+
+def _of_cells(tables: Sequence[xarray.Dataset]) -> Iterator[dict[str, Any]]:
+    """A warning where cells at rims were chosen otherwise for some members than for others."""
+    cells = Counter(table.attrs[CHOSEN_CELLS] for table in tables if CHOSEN_CELLS in table.attrs)
+    if len(cells) > 1:
+        message = (
+            f"cells at rims are covered in {count_of(cells['covered'], 'member')} and whole in "
+            f"{cells['whole']}, as their textures are smooth within the contact or not: between these kinds "
+            "levels differ by the grid, too, by some tenths of a dB. Set contact.rim_cells to one of both."
+        )
+        grade = {"category": CoarseSamplingWarning.__name__, "grade": Grade.WARNING.value}
+        yield grade | {"message": message, "members": sum(cells.values())}
 
 
 def _grouped(members: Sequence[Member], failures: Mapping[tuple[int, ...], Failure]) -> list[dict[str, Any]]:
