@@ -27,7 +27,6 @@ from numba import njit
 from scan_step import MODULUS, problem
 
 from asperity import HalfSpace
-from asperity.contact import halfspace
 from asperity.contact.scan import ScanJob, scan_forces
 from asperity.kernels import projected_cg as cg
 from asperity.kernels import scanning
@@ -76,13 +75,15 @@ def bare(c: Convolution, b: Box, times: int) -> None:
 
 
 @njit(_nrt=False)  # as what is timed is compiled
-def repeated(start: Any, residual: Any, times: int, c: Any, taps: Any, b: Any, task: Any) -> tuple[int, bool]:
-    """Solve again and again from the same start."""
+def repeated(
+    start: Any, residual: Any, times: int, c: Any, taps: Any, b: Any, task: Any, edges: Any
+) -> tuple[int, bool]:
+    """Solve again and again from the same start, on whole cells."""
     result = (0, True)
     for _ in range(times):
         for q in range(len(start)):
             b.pressure[q], b.residual[q] = start[q], residual[q]
-        result = cg.solve(c, taps, b, task, 0, None)
+        result = cg.solve(c, taps, b, task, 0, None, edges)
     return result
 
 
@@ -99,9 +100,11 @@ class Timed:
         self.seconds, self.convolving = 0.0, 0.0
         self.iterations = self.solutions = 0
 
-    def __call__(self, c: Any, taps: Any, b: Any, task: Any, done: int, rims: Any) -> tuple[int, bool]:
+    def __call__(
+        self, c: Any, taps: Any, b: Any, task: Any, done: int, rims: None, edges: Any
+    ) -> tuple[int, bool]:
         """Solve, timed."""
-        arguments = (b.pressure.copy(), b.residual.copy(), c, taps, b, task)
+        arguments = (b.pressure.copy(), b.residual.copy(), c, taps, b, task, edges)
         self.seconds += least(lambda: repeated(*arguments[:2], 5, *arguments[2:]), 2) / 5
         iterations, moving = repeated(*arguments[:2], 1, *arguments[2:])
         self.convolving += iterations * least(lambda: bare(c, b, 40), 2) / 40
@@ -118,7 +121,7 @@ def profile(cells: int) -> None:
         patch.object(scanning, "convolution", interpreted(scanning.convolution)),
         patch.object(scanning, "empty_box", interpreted(scanning.empty_box)),
         patch.object(scanning, "solve_contact", scanning.solve_contact.py_func),
-        patch.object(halfspace, "solve_positions", scanning.solve_positions.py_func),
+        patch.object(scanning, "solve_positions", scanning.solve_positions.py_func),
     ):
         scan_forces(scan_job(p, p["approaches"][:1]), workers=1)
     iterations = timed.iterations
