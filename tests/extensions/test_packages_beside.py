@@ -24,15 +24,17 @@ from asperity.case.form import case_key
 from asperity.cli import main
 from asperity.errors import CaseError
 from asperity.extensions import ExtensionWarning
+from asperity.scenarios.preparing import prepare
 from asperity.scenes.observer import Observer
 from asperity.scenes.report import names_of_reports
 from asperity.schema import Attribute, Entry
 from asperity.serving import case_form
 from asperity.structures.modal import modal_receptance
 from refusals import refusals
-from small_cases import ON_BEAM
+from small_cases import BEARING, ON_BEAM
 
 LAB = Path(__file__).with_name("our_lab")
+OVER_A_BEAM = {"kind": "ball-on-beam", "laws": ["linear"], "start": "0.45 m", "ball": {"load": "30 N"}}
 KIND = "roller-on-foundation"
 CASE = {
     "kind": "bodies",
@@ -115,7 +117,10 @@ def test_a_reader_a_structure_a_law_an_observer_and_a_figure_roll_together(lab, 
     load = tree["fatigue/equivalent_load"]
     np.testing.assert_allclose(load, np.cbrt((force**3).mean("time")), rtol=1e-12)
     assert load.attrs["units"] == "N"
+    width = 2.0 * prepare(case).shape.semi_axes[1]
+    np.testing.assert_allclose(tree["wear/depth"], 1e-15 * 0.005 * force.mean("time") / width, rtol=1e-12)
     assert "ISO 281" in str(tree.attrs["citations"])
+    assert doubt_of_wear(tree) == {"value": f"{tree['wear/depth'].values.max():.1e} m", "grade": ""}
     page = Path("out/report.html").read_text(encoding="utf-8")
     assert page.index('id="fatigue"') > page.index('id="laws"')
     assert "<strong>damped</strong>: As areal, with a damper of its own." in page
@@ -125,6 +130,44 @@ def test_a_reader_a_structure_a_law_an_observer_and_a_figure_roll_together(lab, 
         shares = [float(row["damped [N]"]) for row in csv.DictReader(file)]
     assert np.array_equal(shares, force.sel(law="damped").values.ravel())
     assert "sorted_force.csv" in names_of_reports()
+
+
+def test_the_same_observers_look_at_a_bearing(lab):
+    """Under an axial load P each of Z balls carries P/(Z sin α) on both rings, and wears both."""
+    keys = {"axial": "200 N", "radial": 0, "duration": "50 ms", "fault": None, "centrifugal": False}
+    found = asperity.run(BEARING | keys)
+    case = asperity.read_case(BEARING | keys)
+    of, turning = case.bearing.bearing, case.kinematics
+    load = case.axial / (of.balls * np.sin(case.static.contact_angle))
+    assert found["fatigue/equivalent_load"].shape == (1, 2 * of.balls)
+    np.testing.assert_allclose(found["fatigue/equivalent_load"], load, rtol=1e-6)
+    for ring, (smooth, _) in enumerate(case.contacts):
+        passed = abs(turning.cage - (turning.inner, turning.outer)[ring])
+        width = 2.0 * smooth.semi_axes(smooth.approach(load))[1]
+        depth = found["wear/depth"][0, ring * of.balls : (ring + 1) * of.balls] / 0.05
+        np.testing.assert_allclose(depth, 1e-15 * 0.005 * load * passed / width, rtol=1e-2)
+    assert "Archard" in str(found.attrs["citations"])
+    assert doubt_of_wear(found)["value"] == f"{found['wear/depth'].values.max():.1e} m"
+
+
+def doubt_of_wear(result):
+    """What is said of it in the table of validity."""
+    rows = json.loads(result["contact"].attrs["validity"])
+    (row,) = (row for row in rows if row["quantity"] == "depth of wear, at most")
+    return {name: row[name] for name in ("value", "grade")}
+
+
+def test_an_observer_is_asked_of_what_has_what_it_needs(beside):
+    """One of bearings finds nothing on a beam, one that says nothing of its needs nothing in a bearing."""
+    (beside / "needy_lab.py").write_text(NEEDY)
+    offered = {"pitch": "needy_lab:PITCH", "window": "needy_lab:WINDOW"}
+    installed(beside, {extensions.OBSERVERS: offered}, "needy-lab")
+    on_beam = asperity.run(ON_BEAM | OVER_A_BEAM)
+    assert "pitch" not in on_beam.children
+    assert on_beam["window/cells"].item() > 0.0
+    found = asperity.run(BEARING | {"duration": "50 ms", "fault": None})  # a warning would be an error here
+    assert "window" not in found.children
+    assert found["pitch/circle"].item() == pytest.approx(38.5e-3, rel=0.02)  # of a 6205, between 25 and 52 mm
 
 
 def test_a_plate_yields_to_a_load_as_plates_do(lab):
@@ -182,6 +225,23 @@ def test_members_of_a_study_know_it_in_processes_of_their_own(lab):
     assert float(np.diff(table["force_level_a"].sel(law="damped"))[0]) < -0.1
 
 
+NEEDY = """
+from asperity.scenes.observer import Observer
+from asperity.schema import Entry
+
+LAW = Entry("pitch", "law", "1", "contact law")
+CIRCLE = Entry("pitch", "circle(law)", "m", "diameter of the pitch circle")
+
+
+def observe(computed):
+    return {LAW: list(computed.runs), CIRCLE: [computed.bearing.pitch_diameter for _ in computed.runs]}
+
+
+PITCH = Observer("pitch", (LAW, CIRCLE), observe, needs=["bearing"])
+WINDOW_LAW = Entry("window", "law", "1", "contact law")
+CELLS = Entry("window", "cells(law)", "1", "cells of the window")
+WINDOW = Observer("window", (WINDOW_LAW, CELLS), lambda computed: {CELLS: [computed.shape.body.size]})
+"""
 BROKEN = {
     "asperity.laws": {
         "lost": "broken_lab:LAW",
@@ -292,9 +352,8 @@ def test_of_two_packages_that_offer_one_name_one_is_left_out(beside):
 
 
 def test_an_observer_that_fails_does_not_lose_the_run(broken):
-    case = ON_BEAM | {"kind": "ball-on-beam", "laws": ["linear"], "start": "0.45 m", "ball": {"load": "30 N"}}
     with pytest.warns(ExtensionWarning) as met:
-        result = asperity.run(case)
+        result = asperity.run(ON_BEAM | OVER_A_BEAM)
     said = [str(each.message) for each in met]
     assert any(
         "observer heard: received a failure, ZeroDivisionError (nothing to divide by)" in each
@@ -391,7 +450,7 @@ def test_a_command_names_what_fails_in_a_line_and_goes_on(broken):
 def test_what_is_kept_depends_on_the_packages(lab, beside):
     case = asperity.Bodies(surface={"rms": "1 um"})
     before, key = extensions.stamp(), case_key("run", 1, case)
-    assert len(before) == 6
+    assert len(before) == 7
     file = beside / "our_lab" / "damped.py"
     file.write_text(file.read_text(encoding="utf-8") + "\n", encoding="utf-8")
     extensions.stamp.cache_clear()

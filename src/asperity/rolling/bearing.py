@@ -85,6 +85,11 @@ class RolledBearing:
     unconverged_steps: int
 
     @property
+    def contact_force(self) -> Array:
+        """Forces of all contacts (2 Z, n), N: of all balls with the inner ring, then with the outer one."""
+        return np.concatenate([self.inner_force, self.outer_force])
+
+    @property
     def vibrates(self) -> bool:
         """Whether any force varies by more than its tolerance."""
         return any(

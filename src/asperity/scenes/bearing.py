@@ -27,9 +27,10 @@ from asperity.scenarios.prepared_bearing import (
     prepare_bearing,
 )
 from asperity.scenes import schema
-from asperity.scenes.bearing_levels import levels_group
 from asperity.scenes.bearing_validity import bearing_findings
 from asperity.scenes.computed_bearing import compute_bearing
+from asperity.scenes.observer import observed
+from asperity.scenes.observers import OF_BEARINGS
 from asperity.scenes.result import root_attributes, scenario_group
 from asperity.schema import Values, bearing, contact, rolling, spectra, tree
 from asperity.structures.ball_bearing import PARTS, Kinematics
@@ -69,21 +70,22 @@ def bearing_result(
     """Run a bearing by each of its laws and lay its result out, as `asperity.scenes.result` does others."""
     case = prepared.case
     began = time.monotonic()
-    runs = compute_bearing(prepared, progress).runs
-    heard = heard_group(case, runs)
+    computed = compute_bearing(prepared, progress)
+    heard = heard_group(case, computed.runs)
     apart = Values() if brief else alone(prepared, progress)
-    runs = {name: steady_where_still(run) for name, run in runs.items()}
-    found = list(bearing_findings(case, runs))
+    runs = {name: steady_where_still(run) for name, run in computed.runs.items()}
+    seen = observed(replace(computed, runs=runs), OF_BEARINGS)
+    found = list(bearing_findings(case, runs)) + seen.findings
     warn_of_findings(found)
-    scenario = scenario_group(case, _numerics(case, time.monotonic() - began))
+    numerics = (*_numerics(case, time.monotonic() - began), *seen.numerics)
+    scenario = scenario_group(case, numerics)
     scenario[contact.VALIDITY] = [finding.row() for finding in found]
     at_rest = static_group(case.static, case.kinematics)
-    levels = levels_group(case, runs)
-    result = tree(scenario | at_rest | motion_group(case, runs) | heard | levels | apart)
+    result = tree(scenario | at_rest | motion_group(case, runs) | heard | seen.values | apart)
     result.attrs = root_attributes(
         case,
         case.title,
-        SOURCES,
+        (*SOURCES, *seen.sources),
         _verdict(heard, _deciding(apart), bool(case.faults)),
         caught,
         {NAMES[name]: f"{draw} on {radius:.6g} m, seed {case.seed}" for name, draw, radius in _draws(case)},

@@ -43,8 +43,14 @@ class ComputedBearing(PreparedBearing):
         """Geometry of the bearing, and its speeds."""
         return self.case.bearing.bearing
 
+    @property
+    def quantities(self) -> frozenset[str]:
+        """Which of `asperity.scenes.observer.QUANTITIES` it has."""
+        sensed = {"acceleration"} if self.case.sensors else set()
+        return frozenset({"contact_force", "bearing"} | sensed)
+
     def stacked(self, name: str) -> Array:
-        """Stack one record of all runs, (laws, balls, directions or sensors, ...), by its attribute."""
+        """Stack one record of all runs, (laws, balls, contacts or sensors, ...), by its attribute."""
         return np.stack([getattr(run, name) for run in self.runs.values()])
 
 

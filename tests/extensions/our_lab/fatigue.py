@@ -21,5 +21,9 @@ def observe(computed):
 
 
 OBSERVER = Observer(
-    GROUP, (LAW, CONTACT, EQUIVALENT_LOAD), observe, sources=("ISO 281:2007 (exponent of ball bearings).",)
+    GROUP,
+    (LAW, CONTACT, EQUIVALENT_LOAD),
+    observe,
+    needs=["contact_force"],
+    sources=["ISO 281:2007 (exponent of ball bearings)."],
 )
