@@ -11,12 +11,13 @@ import pytest
 import asperity
 from asperity import laws
 from asperity.case.cases import as_case
-from asperity.errors import CaseError, OutOfRangeWarning, percent
+from asperity.errors import CaseError, ComputationError, OutOfRangeWarning, percent
 from asperity.parameters import Number, key
 from asperity.reference.materials import MATERIALS
 from asperity.running import prepare_case
 from asperity.scenarios import raceway_laws, run_time, scanned_states
 from asperity.scenarios.prepared_bearing import CELL_TIME, expected, prepare_bearing
+from asperity.scenes import computed_bearing
 from asperity.scenes.bearing import heard_group
 from asperity.scenes.bearing_validity import out_of_place
 from asperity.scenes.computed_bearing import bearing_rings, cage_slip, compute_bearing, thinned
@@ -296,8 +297,17 @@ def test_forces_that_leave_the_states_scanned_have_more_scanned_and_are_those_of
     whole, *_ = ends
     first, last = ends[4], ends[-2]
     assert first < last < whole
-    every, few = (run.outer_force for run in found)
+    rolled = computed_bearing.roll_bearing
+
+    def fail_at_first(*given, **keys):
+        monkeypatch.setattr(computed_bearing, "roll_bearing", rolled)
+        raise ComputationError("no rest", "another load")
+
+    monkeypatch.setattr(computed_bearing, "roll_bearing", fail_at_first)
+    found += compute_bearing(prepared, lambda *_: None).runs.values()
+    every, few, failed = (run.outer_force for run in found)
     assert np.std(few - every) < 3e-3 * np.std(every)
+    np.testing.assert_array_equal(failed, every)  # what fails in the states expected is rolled over all
 
 
 def test_no_force_is_written_below_zero_where_a_ball_leaves_the_ring(runs):

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -127,10 +127,11 @@ class ReducedCase(PreparedCase):
         ensemble = self._reduced.ensemble
         return self.states or states_expected(ensemble.approaches, ensemble.mean_force, self.scene.loads)
 
-    def wider(self, visited: tuple[float, float]) -> "ReducedCase | None":
+    def wider(self, visited: tuple[float, float] | None) -> Self | None:
         """One whose path is scanned for a motion between two approaches, m, too; None if this one's is."""
         scanned = self.scanned
-        needed = states_around(self._reduced.approaches, visited)
+        approaches = self._reduced.approaches
+        needed = slice(0, len(approaches)) if visited is None else states_around(approaches, visited)
         both = slice(min(scanned.start, needed.start), max(scanned.stop, needed.stop))
         return None if both == scanned else replace(self, states=both)
 

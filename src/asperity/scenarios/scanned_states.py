@@ -1,8 +1,13 @@
 """States at which a path is scanned: those that the motion visits, each for itself."""
 
+import warnings
+from collections.abc import Callable, Sequence
+from typing import Protocol, Self, TypeVar
+
 import numpy as np
 
 from asperity.arguments import Array
+from asperity.errors import ComputationError, PhysicsWarning
 
 EXPECTED = (0.75, 1.25)
 """Forces between which a motion is expected to stay, over the static loads, until it is known."""
@@ -30,3 +35,63 @@ def states_around(approaches: Array, visited: tuple[float, float]) -> slice:
     first = min(max(int(low) - 1, 0), last - 1)
     end = max(min(int(high) + 1, last), min(first + FEWEST, last))
     return slice(max(min(first, end - FEWEST), 0), end)
+
+
+class Scanned(Protocol):
+    """What a law looks its forces up in, scanned in some states."""
+
+    def wider(self, visited: tuple[float, float] | None) -> Self | None:
+        """One that is scanned for a motion between two bounds, too, or in all states; None if this one is."""
+
+
+OfScan = TypeVar("OfScan", bound=Scanned)
+Motion = TypeVar("Motion")
+
+
+def within_scan(
+    roll: Callable[[Sequence[OfScan], float], Motion],
+    scanned: Sequence[OfScan],
+    visited: Callable[[Motion], Sequence[tuple[float, float]]],
+    tried: float = 1.0,
+) -> tuple[Motion, Sequence[OfScan]]:
+    """Roll over what is scanned; where motion leaves it, scan more and roll anew.
+
+    Where none of the states scanned touches a valley that the record begins over, or motion goes far beyond
+    them, rolling fails: it is tried again with all states.
+
+    Parameters
+    ----------
+    roll : callable
+        Rolls over what is scanned, for a share of the record.
+    scanned : sequence
+        What is looked up in: a path for each contact that has one of its own, or raceways.
+    visited : callable
+        Least and largest approach, m, or force, N, of a motion on each of them.
+    tried : float
+        Share of the record after which it is asked first whether motion leaves what was scanned.
+
+    Returns
+    -------
+    tuple
+        The motion, and what it took to be scanned.
+    """
+    share = tried
+    while True:
+        failure = None
+        with PhysicsWarning.caught() as caught:
+            try:
+                motion = roll(scanned, share)
+                bounds: Sequence[tuple[float, float] | None] = visited(motion)
+            except ComputationError as error:
+                failure = error
+                bounds = [None] * len(scanned)
+        wider = [each.wider(between) for each, between in zip(scanned, bounds, strict=True)]
+        if not any(wider) and (failure is not None or share == 1.0):
+            break
+        scanned = [more or each for more, each in zip(wider, scanned, strict=True)]
+        share = 1.0
+    if failure is not None:
+        raise failure
+    for each in caught:
+        warnings.warn(each.message, stacklevel=2)
+    return motion, scanned

@@ -1,9 +1,7 @@
 """A case of any kind is computed: from textures to the motion of what rolls and of what is rolled over."""
 
 import json
-import math
 import time
-import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
@@ -17,7 +15,6 @@ from asperity.case.any_case import AnyCase
 from asperity.case.form import content, file_digest
 from asperity.case.scene import Case
 from asperity.contact.scan import ScannedForces
-from asperity.errors import ComputationError, PhysicsWarning
 from asperity.laws import Need, Role, in_role, names, needs_of, spec_of
 from asperity.progress import Progress
 from asperity.radiation.passing import passed_points
@@ -25,6 +22,7 @@ from asperity.rolling.roll import RolledBodies, roll_bodies, without_rounding
 from asperity.scenarios import compiling
 from asperity.scenarios.laws import ReducedCase, reduced_case, working_point
 from asperity.scenarios.running_in import run_in_case
+from asperity.scenarios.scanned_states import within_scan
 from asperity.scenarios.scene import PreparedCase, Scene
 from asperity.scenarios.textures import other_contacts, recorded_time
 from asperity.schema import Values
@@ -182,7 +180,7 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
     book("reduction")
     every: Sequence[ReducedCase] = [first, *(first.of_contact(*own) for own in others)]
 
-    def once(name: str, every: Sequence[ReducedCase]) -> RolledBodies:
+    def once(name: str, every: Sequence[ReducedCase], share: float = 1.0) -> RolledBodies:
         laws = [materials.build(name) for materials in every]
         run = roll_bodies(
             over,
@@ -191,7 +189,7 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
             positions=scene.positions,
             speed=case.speed,
             start=case.record_start,
-            duration=duration,
+            duration=share * duration,
             settling=case.settled_time,
             time_step=case.time_step,
             sensors=case.rolled_over.sensor_positions,
@@ -201,9 +199,13 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
         )
         return without_rounding(run)
 
+    visited = partial(_visited, len(every))
     runs: dict[str, RolledBodies] = {}
     for name in case.laws:
-        runs[name], every = _within_scan(partial(once, name), every, name)
+        if Need.SCAN in spec_of(name).needs:
+            runs[name], every = within_scan(partial(once, name), every, visited)
+        else:
+            runs[name] = once(name, every)
         book(f"law {name}")
     bare = in_role(Role.BARE, names())
     bare_force = None
@@ -222,34 +224,9 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
     return computed
 
 
-def _within_scan(
-    once: Callable[[Sequence[ReducedCase]], RolledBodies], every: Sequence[ReducedCase], law: str
-) -> tuple[RolledBodies, Sequence[ReducedCase]]:
-    """Roll by a law of these materials; where motion leaves what was scanned, scan more and roll anew.
-
-    With the materials that it took. Where none of the states scanned touches a valley that the record begins
-    over, or motion goes far beyond them, rolling fails: it is tried again with all states.
-    """
-    if Need.SCAN not in spec_of(law).needs:
-        return once(every), every
-    while True:
-        failure = None
-        with PhysicsWarning.caught() as caught:
-            try:
-                run = once(every)
-                visited = float(run.visited[:, 0].min()), float(run.visited[:, 1].max())
-            except ComputationError as error:
-                failure = error
-                visited = -math.inf, math.inf
-        wider = [materials.wider(visited) for materials in every]
-        if not any(wider):
-            break
-        every = [more or materials for more, materials in zip(wider, every, strict=True)]
-    if failure is not None:
-        raise failure
-    for each in caught:
-        warnings.warn(each.message, stacklevel=2)
-    return run, every
+def _visited(paths: int, run: RolledBodies) -> list[tuple[float, float]]:
+    """Least and largest approach of all contacts of a run, m, for each of so many paths that they roll on."""
+    return [(float(run.visited[:, 0].min()), float(run.visited[:, 1].max()))] * paths
 
 
 def _in_time(scene: Scene, case: Case, store: Store, progress: Progress) -> Modal | RailBetween | None:

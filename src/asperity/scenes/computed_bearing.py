@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from functools import partial
+from typing import Any, Self
 
 import numpy as np
 
 from asperity.arguments import Array
 from asperity.case.ball_bearing import BearingUnderLoad
-from asperity.errors import PhysicsWarning
 from asperity.laws import Need, spec_of
 from asperity.progress import Progress
 from asperity.rolling.bearing import BearingRings, RolledBearing, Sensor, roll_bearing
 from asperity.scenarios.prepared_bearing import RINGS, PreparedBearing, raceways_of
 from asperity.scenarios.raceway_laws import OnRaceway, ball_heights, laws_on
+from asperity.scenarios.scanned_states import within_scan
 from asperity.scenes.compute import checkpoint_of
 from asperity.store import Store
 from asperity.structures.ball_bearing import BallBearing
@@ -71,21 +71,33 @@ def compute_bearing(prepared: PreparedBearing, progress: Progress) -> ComputedBe
         every = (*prepared.raceways, *prepared.balls)
         return [heights for each in every for heights in (each.heights, each.line, each.faults)]
 
-    def once(law: str, inner: Any, outer: Any, duration: float = case.duration) -> RolledBearing:
+    def once(law: str, inner: Any, outer: Any, share: float = 1.0) -> RolledBearing:
         return roll_bearing(
             of, bearing_rings(case), inner, outer,
             speed=case.speed, radial=case.radial, axial=case.axial, rotating=case.rotating,
-            duration=duration, time_step=case.step, settling=case.settling, slip=cage_slip(case),
+            duration=max(share * case.duration, case.step), time_step=case.step,
+            settling=case.settling, slip=cage_slip(case),
             ball_heights=[] if isinstance(inner, list) else averaged,
             centrifugal=case.centrifugal, sensors=sensors,
             highest_frequency=case.highest_frequency, progress=progress,
             checkpoint=checkpoint_of(law, case, surfaces, Store()),
         )  # fmt: skip
 
+    def looking_up(law: str, scanned: Sequence[ScannedRaceway], share: float) -> RolledBearing:
+        inner, outer = (each.raceway.build(law, each.states) for each in scanned)
+        return once(law, inner, outer, share)
+
+    loads = case.static.inner_load, case.static.outer_load
+    scanned: Sequence[ScannedRaceway] = []
+    if looked_up:
+        scanned = [
+            ScannedRaceway(on, on.states_under(each.min(), each.max()))
+            for on, each in zip(ons, loads, strict=True)
+        ]
     found = {}
     for name in case.laws:
         if name in looked_up:
-            run = _within_scan(case, name, ons, once)
+            run, scanned = within_scan(partial(looking_up, name), scanned, _visited, TRIED)
         else:
             run = once(name, *(of[name] for of in laws_of))
         every = case.steps_per_sample
@@ -95,31 +107,25 @@ def compute_bearing(prepared: PreparedBearing, progress: Progress) -> ComputedBe
     return ComputedBearing(**vars(prepared), runs=found)
 
 
-def _within_scan(
-    case: BearingUnderLoad,
-    law: str,
-    ons: Sequence[OnRaceway],
-    once: Callable[[str, Any, Any, float], RolledBearing],
-) -> RolledBearing:
-    """Run by a law in the states expected; where forces leave what was scanned, scan more and run anew."""
-    loads = case.static.inner_load, case.static.outer_load
-    states = [on.states_under(each.min(), each.max()) for on, each in zip(ons, loads, strict=True)]
-    duration = max(TRIED * case.duration, case.step)
-    while True:
-        with PhysicsWarning.caught() as caught:
-            inner, outer = (on.build(law, each) for on, each in zip(ons, states, strict=True))
-            run = once(law, inner, outer, duration)
-        wider = [
-            on.wider(each, (1.0 - DAMPED) * least, (1.0 + DAMPED) * most)
-            for on, each, (least, most) in zip(ons, states, run.reached, strict=True)
-        ]
-        if wider == states and duration == case.duration:
-            break
-        states = wider
-        duration = case.duration
-    for each in caught:
-        warnings.warn(each.message, stacklevel=2)
-    return run
+@dataclass(frozen=True, eq=False)
+class ScannedRaceway:
+    """A raceway in which a law looks its forces up, with the states in which it is scanned."""
+
+    raceway: OnRaceway
+    states: slice
+
+    def wider(self, visited: tuple[float, float] | None) -> Self | None:
+        """One that is scanned for forces between two, N, too; None if this one is."""
+        if visited is None:
+            states = slice(0, len(self.raceway.approaches))
+        else:
+            states = self.raceway.wider(self.states, *visited)
+        return None if states == self.states else replace(self, states=states)
+
+
+def _visited(run: RolledBearing) -> list[tuple[float, float]]:
+    """Least and largest force of the springs of contacts, N, on the inner and on the outer raceway."""
+    return [((1.0 - DAMPED) * least, (1.0 + DAMPED) * most) for least, most in run.reached]
 
 
 def bearing_rings(case: BearingUnderLoad) -> BearingRings:
