@@ -203,7 +203,7 @@ REFUSED = [
     (f"{VARY} seed=1 -o rail.toml", "rail.toml is a file)"),
     (f"{VARY} seed=1 --noise '20 dB'", "--noise: received signals of no study; allowed: it goes with"),
     ("run|study small.toml --what-helps", "what helps: received a ball-on-beam case; allowed: a case over a"
-     " track, which is heard, or of a ball bearing"),
+     " track, which is heard, of a ball bearing, or of a kind that lists its own"),
     # runs
     ("listen {run} --what drums", "received 'drums'; allowed: acceleration"),
     ("figures {run} scene force_band -o new", 'Did you mean "force_bands"?'),

@@ -202,6 +202,10 @@ def test_a_kind_of_ones_own_is_written_checked_and_run(lab, beside):
     rolling = result["rolling"].to_dataset().sel(contact=1)
     np.testing.assert_allclose(rolling["over_displacement"], rolling["contact_force"] / 5e6, rtol=1e-12)
     assert float(abs(rolling["contact_force"].mean("time") / 30.0 - 1.0).max()) < 0.02
+    helps = asperity.what_helps(ON_BEAM | own)
+    assert helps.sweep["variant"]["half as stiff"] == {"foundation.stiffness": "times 0.5"}
+    softer = [member.case.foundation.stiffness for member in helps.members()]
+    assert sorted(softer) == [2.5e6] * 3 + [5e6] * 3
 
 
 def test_keys_limits_and_templates_of_a_law_and_a_structure_follow(lab):

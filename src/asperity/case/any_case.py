@@ -13,6 +13,7 @@ from asperity import files
 from asperity.arguments import file_path, nearest, require, shown
 from asperity.case.documented import allowed_in
 from asperity.case.form import Inner, Section, content, described_value, holds_memory
+from asperity.case.ready_lists import NamedChanges
 from asperity.case.toml import toml_text, toml_value
 from asperity.errors import InputError
 from asperity.laws import family_of, law_keys, names, spec_of
@@ -286,6 +287,11 @@ class AnyCase(Section):
     def highest_frequency(self) -> float:
         """Highest frequency that its spectra hold, Hz."""
         raise NotImplementedError
+
+    @property
+    def helping_changes(self) -> NamedChanges:
+        """Changes that may make it quieter, of which a study of what helps is made; none by default."""
+        return {}
 
     def with_(self, **changes: Any) -> Self:
         """Return the same case with other values for some keys.

@@ -15,6 +15,7 @@ from asperity.case import tables
 from asperity.case.body import INERTIA, MASS, PROFILE
 from asperity.case.form import Numbers, Section, name_of
 from asperity.case.measured import read_decay_rates, read_mobility
+from asperity.case.ready_lists import OVER_TRACKS, NamedChanges, changes_of
 from asperity.case.surface import INDEX, LENGTH, POSITION, of_file
 from asperity.errors import InputError, PhysicsWarning
 from asperity.parameters import (
@@ -100,6 +101,11 @@ class RolledOver(Section):
             return self.sensors or ()
         first, last = self.extent
         return tuple(first + share * (last - first) for share in SENSOR_SHARES)
+
+    @property
+    def helping_changes(self) -> NamedChanges:
+        """Changes that may make what rolls over it quieter; the section of what rolls stands as `wheel`."""
+        return {}
 
     def point_positions(self, middle: float) -> tuple[float, ...]:
         """Where the rail of a track is looked at, m, of a run whose middle is there, m."""
@@ -218,6 +224,11 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
         "imaginary part ((m/s)/N; in a file also of an accelerance or receptance, by its unit)",
         "that of this track",
     )
+
+    @property
+    def helping_changes(self) -> NamedChanges:
+        """Changes that may make a case over a track quieter: pads, roughness, speed, dampers, …."""
+        return changes_of(OVER_TRACKS)
 
     @property
     def radius_across(self) -> float:

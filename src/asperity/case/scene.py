@@ -10,6 +10,7 @@ from asperity.case.any_case import LAW, AnyCase
 from asperity.case.body import Rolling
 from asperity.case.chosen_lengths import chosen_lengths
 from asperity.case.form import section
+from asperity.case.ready_lists import NamedChanges
 from asperity.case.rolled_over import RolledOver, TrackKeys
 from asperity.case.sections import DURATION, DURATION_OR_ZERO, ContactKeys, NoiseKeys, NumericsKeys
 from asperity.case.surface import INDEX, POSITION, Surface
@@ -130,6 +131,13 @@ class Case(AnyCase):
         """What is rolled over."""
         over: RolledOver = getattr(self, self.OVER)
         return over
+
+    @property
+    def helping_changes(self) -> NamedChanges:
+        """Changes that may make it quieter: those of what is rolled over, by its own names of sections."""
+        own = {"wheel": self.ROLLING}
+        listed = self.rolled_over.helping_changes
+        return {name: {own.get(key, key): keys[key] for key in keys} for name, keys in listed.items()}
 
     @property
     def over_name(self) -> str:

@@ -102,9 +102,9 @@ def new(kind: str, laws: tuple[str, ...]) -> None:
     asperity new optimisation > aim.toml
     """
     from asperity.case.cases import not_a_kind, template
+    from asperity.case.ready_lists import READY_LISTS
     from asperity.optimising.definition import aim_template
     from asperity.studies.definition import TEMPLATE
-    from asperity.studies.effects import READY_LISTS
 
     if kind not in templates():
         raise not_a_kind(kind, templates())

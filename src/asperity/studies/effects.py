@@ -2,18 +2,15 @@
 
 import json
 import os
-from collections.abc import Callable, Collection, Mapping
-from functools import partial
-from importlib import resources
+from collections.abc import Collection, Mapping
 from typing import Any
 
 import numpy as np
 import xarray
 from xarray import DataTree
 
-from asperity.arguments import NDArray, one_of, shown
-from asperity.case import any_case, cases, rolled_over, scene, toml
-from asperity.case.ball_bearing import BearingUnderLoad
+from asperity.arguments import NDArray, one_of, require, shown
+from asperity.case import any_case, cases
 from asperity.errors import InputError
 from asperity.progress import Progress
 from asperity.scenes import schema
@@ -28,35 +25,12 @@ SEEDS = 3
 CONFIDENCE = 0.95
 
 
-OVER_TRACKS, IN_BEARINGS = "what_helps.toml", "what_helps_in_bearings.toml"
-"""Ready lists: of what is heard beside a track, and of a ball bearing."""
-
-
-def ready_list(name: str = OVER_TRACKS) -> str:
-    """A study of what helps, as a commented text."""
-    return resources.files(__package__).joinpath(name).read_text(encoding="utf-8")
-
-
-READY_LISTS: Mapping[str, Callable[[], str]] = {
-    "what-helps": ready_list,
-    "what-helps-in-bearings": partial(ready_list, IN_BEARINGS),
-}
-"""By the words of ``asperity new``."""
-
-
-def _listed(case: any_case.AnyCase) -> dict[str, Any]:
-    """Named changes of a case that are ready to be asked; an `InputError` says if there are none."""
-    if isinstance(case, BearingUnderLoad):
-        name = IN_BEARINGS
-        own = {}
-    elif isinstance(case, scene.Case) and isinstance(case.rolled_over, rolled_over.TrackKeys):
-        name = OVER_TRACKS
-        own = {"wheel": case.ROLLING}  # of bodies, the section is called otherwise
-    else:
-        allowed = "a case over a track, which is heard, or of a ball bearing"
-        raise InputError("what helps", f"a {case.kind} case", allowed)
-    listed = toml.read_toml(ready_list(name), "study", name)["sweep"][VARIANT]
-    return {variant: {own.get(key, key): keys[key] for key in keys} for variant, keys in listed.items()}
+def _named_changes(case: any_case.AnyCase) -> dict[str, Mapping[str, Any]]:
+    """Changes of a case that are ready to be asked; an `InputError` says if its kind lists none."""
+    listed = case.helping_changes
+    allowed = "a case over a track, which is heard, of a ball bearing, or of a kind that lists its own"
+    require(listed, "what helps", f"a {case.kind} case", allowed)
+    return dict(listed)
 
 
 def what_helps(
@@ -83,7 +57,7 @@ def what_helps(
     Raises
     ------
     InputError
-        If the case is wrong, or neither rolls over a track nor is that of a bearing.
+        If the case is wrong, or its kind lists nothing that may help it: other than tracks and bearings.
 
     Examples
     --------
@@ -93,7 +67,7 @@ def what_helps(
     (['seed', 'variant'], {'speed': 'times 0.8'})
     """
     given = cases.as_case(case)
-    variants = _listed(given)
+    variants = _named_changes(given)
     seeds = [given.seed + more for more in range(SEEDS)]
     asked: dict[str, Any] = {SEED: seeds, VARIANT: variants, **(sweep or {})}
     return study_of(given.with_(laws=given.laws[:1]), asked)

@@ -42,6 +42,11 @@ class Foundation(RolledOver):
     stiffness: float = key(STIFFNESS, "5 MN/m", "stiffness", "1 N/m to 1 TN/m: foundations lie between")
     material: Material = key(MaterialOrName(), "steel", "material of its surface")
 
+    @property
+    def helping_changes(self):
+        """What a study of what helps asks of it."""
+        return {"half as stiff": {"foundation": {"stiffness": "times 0.5"}}}
+
     def model(self, highest_frequency):
         """Build it."""
         return ElasticFoundation(self.stiffness)

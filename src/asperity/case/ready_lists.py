@@ -1,0 +1,32 @@
+"""Ready lists of what may make a case quieter: a study as a commented text, and its named changes."""
+
+from collections.abc import Callable, Mapping
+from functools import partial
+from importlib import resources
+from typing import Any
+
+from asperity.case import toml
+
+OVER_TRACKS, IN_BEARINGS = "what_helps.toml", "what_helps_in_bearings.toml"
+"""Of what is heard beside a track, and of a ball bearing."""
+
+NamedChanges = Mapping[str, Mapping[str, Any]]
+"""Changes of keys of a case, by what they are called."""
+
+
+def ready_list(name: str = OVER_TRACKS) -> str:
+    """A study of what helps, as a commented text."""
+    return resources.files(__package__).joinpath(name).read_text(encoding="utf-8")
+
+
+def changes_of(name: str) -> NamedChanges:
+    """Changes that a ready list names."""
+    changes: NamedChanges = toml.read_toml(ready_list(name), "study", name)["sweep"]["variant"]
+    return changes
+
+
+READY_LISTS: Mapping[str, Callable[[], str]] = {
+    "what-helps": ready_list,
+    "what-helps-in-bearings": partial(ready_list, IN_BEARINGS),
+}
+"""By the words of ``asperity new``."""
