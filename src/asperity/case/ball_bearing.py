@@ -17,7 +17,7 @@ from asperity.case import toml
 from asperity.case.any_case import LAW, AnyCase
 from asperity.case.body import DAMPING
 from asperity.case.form import Numbers, Section, name_of, section
-from asperity.case.ready_lists import IN_BEARINGS, NamedChanges, changes_of
+from asperity.case.ready_lists import IN_BEARINGS, NamedChanges, listed_changes
 from asperity.case.sections import DURATION, DURATION_OR_ZERO
 from asperity.case.surface import INDEX
 from asperity.case.table_headings import Column
@@ -348,7 +348,7 @@ class BearingUnderLoad(AnyCase):
     @property
     def helping_changes(self) -> NamedChanges:
         """Changes that may make it quieter: clearance, preload, grooves, waves of each part, …."""
-        return changes_of(IN_BEARINGS)
+        return listed_changes(IN_BEARINGS)
 
     @property
     def title(self) -> str:

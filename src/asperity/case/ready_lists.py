@@ -19,7 +19,7 @@ def ready_list(name: str = OVER_TRACKS) -> str:
     return resources.files(__package__).joinpath(name).read_text(encoding="utf-8")
 
 
-def changes_of(name: str) -> NamedChanges:
+def listed_changes(name: str) -> NamedChanges:
     """Changes that a ready list names."""
     changes: NamedChanges = toml.read_toml(ready_list(name), "study", name)["sweep"]["variant"]
     return changes

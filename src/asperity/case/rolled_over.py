@@ -15,7 +15,7 @@ from asperity.case import tables
 from asperity.case.body import INERTIA, MASS, PROFILE
 from asperity.case.form import Numbers, Section, name_of
 from asperity.case.measured import read_decay_rates, read_mobility
-from asperity.case.ready_lists import OVER_TRACKS, NamedChanges, changes_of
+from asperity.case.ready_lists import OVER_TRACKS, NamedChanges, listed_changes
 from asperity.case.surface import INDEX, LENGTH, POSITION, of_file
 from asperity.errors import InputError, PhysicsWarning
 from asperity.parameters import (
@@ -228,7 +228,7 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
     @property
     def helping_changes(self) -> NamedChanges:
         """Changes that may make a case over a track quieter: pads, roughness, speed, dampers, …."""
-        return changes_of(OVER_TRACKS)
+        return listed_changes(OVER_TRACKS)
 
     @property
     def radius_across(self) -> float:
