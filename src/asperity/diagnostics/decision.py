@@ -7,13 +7,13 @@ from typing import Literal
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, positive, require
+from asperity.arguments import ArrayLike, positive, require
 from asperity.diagnostics.confidence import Basis
 from asperity.diagnostics.envelopes import above_frequency
 from asperity.diagnostics.hypotheses import FINE, NEAR, BearingRecord, Hypothesis, Tone
 from asperity.diagnostics.kurtogram import Kurtogram, kurtogram
 from asperity.diagnostics.prominence import HARMONICS, LOWEST_PLACE
-from asperity.diagnostics.recording import Recording, equal_pieces
+from asperity.diagnostics.recording import Pieces, Recording
 from asperity.progress import Progress, counted
 from asperity.written_numbers import rounded
 
@@ -220,8 +220,8 @@ def diagnose_together(
     told = positive("speed (Hz)", speed)
     recordings = [Recording.of(each, rate, still=1.0 / told) for each in signals]
     stretches = [each for recording in recordings for each in recording.stretches]
-    pieces = equal_pieces(stretches, LONGEST * rate / told)
-    duration = pieces[0].size / rate
+    longest = LONGEST * rate / told
+    duration = Pieces.of(stretches, longest).size / rate
     part, tone = max(tones.items(), key=lambda each: each[1].order)
     blows = f"the blows of the {NAMES[part]} at {rounded(tone.order * told, 4)} Hz"
     received = f"{rounded(rate, 6)} Hz"
@@ -233,8 +233,7 @@ def diagnose_together(
     received = f"{rounded(duration)} s"
     allowed = f"at least {rounded(needed)} s, to resolve {lines}"
     require(duration >= needed, "duration of the signal", received, allowed, "Record longer.")
-    stretches = [_without_clicks(each, each.size / rate * told) for each in stretches]
-    pieces = equal_pieces(stretches, LONGEST * rate / told)
+    pieces = Pieces.of(stretches, longest, rate, told)
     reached = HARMONICS * tone.order * told
     seen = Kurtogram.mean(_kurtograms(pieces, rate, reached, progress))
     record = BearingRecord.of(pieces, rate, seen, band or _ringing_band(seen, rate, reached), progress)
@@ -243,19 +242,8 @@ def diagnose_together(
     return replace(found, doubts=tuple(doubts), fastest=fastest)
 
 
-def _without_clicks(values: Array, turns: float) -> Array:
-    """A signal (n,) limited to what it reaches once in two turns: what is larger is no blow that recurs.
-
-    A single click, as of a loose cable, would be all that a spectrum shows.
-    """
-    size = np.abs(values)
-    recurring = max(int(0.5 * turns), 1)
-    reached = float(np.partition(size, -recurring)[-recurring])
-    return np.clip(values, -reached, reached)
-
-
 def _kurtograms(
-    pieces: Sequence[Array], rate: float, reached: float, progress: Progress | None
+    pieces: Pieces, rate: float, reached: float, progress: Progress | None
 ) -> Iterator[Kurtogram]:
     """Kurtogram of each piece above the lines that an envelope shall show, up to a frequency, Hz.
 

@@ -11,6 +11,7 @@ from asperity.diagnostics.envelopes import mean_spectrum, prewhitened
 from asperity.diagnostics.kurtogram import Kurtogram
 from asperity.diagnostics.lines import STANDS_OUT
 from asperity.diagnostics.prominence import LOWEST_PLACE, Prominence
+from asperity.diagnostics.recording import Pieces
 from asperity.progress import Progress, counted
 
 RANGE = 4.2
@@ -137,20 +138,19 @@ class BearingRecord:
     @classmethod
     def of(
         cls,
-        pieces: Sequence[Array],
+        pieces: Pieces,
         rate: float,
         kurtogram: Kurtogram,
         limits: tuple[float, float],
         progress: Progress | None = None,
     ) -> "BearingRecord":
-        """Pieces (n,) of a record without their means, at a sampling rate, Hz, their kurtogram, and the
-        band of the second envelope."""
+        """Pieces of a record at a sampling rate, Hz, their kurtogram, and the band of the second envelope."""
         views = "spectrum", "envelope of the whitened signal", "envelope of the band"
         plain, loud, ringing = (counted(pieces, len(pieces), view, progress) for view in views)
         levels = ((each, float(each.std())) for each in plain)
         white = (prewhitened(each, rate) for each in loud)
         return cls(
-            duration=pieces[0].size / rate,
+            duration=pieces.size / rate,
             spectrum=Prominence.of(mean_spectrum(levels, rate)[0], means=len(pieces)),
             white=Prominence.of_envelopes(white, rate, (0.0, 0.5 * rate), len(pieces)),
             band=Prominence.of_envelopes(ringing, rate, limits, len(pieces)),

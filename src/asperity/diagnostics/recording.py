@@ -1,6 +1,6 @@
 """What is wrong with a recording, whatever it was of: samples that are missing, stand still, are clipped."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,6 +27,10 @@ SLOW = 2**18
 """Samples of a piece from which on it is cut to a length that is quick to transform."""
 OFFSET = 1.0
 """Mean over the rms about it from which on it is told."""
+BLOCK = 2**16
+"""Samples that are looked at together: a record is not held beside itself."""
+SAMPLE, NEAR_MIDDLE = 2**14, (0.48, 0.52)
+"""Samples that tell near what the median of a record is, and shares of them between which it is sought."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +40,7 @@ class Recording:
     Attributes
     ----------
     stretches : tuple of ndarray (n,)
-        In their order, each without its mean, in the unit of the signal.
+        In their order, as they were measured, in the unit of the signal.
     doubts : tuple of str
         What is wrong with it, in sentences.
     clipped : float
@@ -54,39 +58,84 @@ class Recording:
         What does not move for so long, s, is no signal: a channel that was stuck, or filled up.
         """
         values, rate = _given(signal, rate)
-        missing, told_missing = _bridged(values)
+        values, missing, told_missing = _bridged(values)
         stuck, told_stuck = _stands_still(values, rate, still)
         left_out = missing | stuck
-        whole = values[~left_out]
+        whole = values[~left_out] if left_out.any() else values
         allowed, remedy = "a signal that varies", "Is the sensor connected?"
         moves = whole.size > 0 and np.ptp(whole) > 0.0
         require(moves, "signal", "the same number throughout", allowed, remedy)
         between = _between(left_out, values)
-        stretches = [each for each in between if each.size >= FEWEST and np.ptp(each) > 0.0]
+        stretches = tuple(each for each in between if each.size >= FEWEST and np.ptp(each) > 0.0)
         longest = f"{max(map(len, between))} samples without a gap at most"
         require(stretches, "signal", longest, f"at least {FEWEST} that vary")
         clipped, told_clipped = _clipped(whole)
         told = (told_missing, told_stuck, _in_stretches(stretches, left_out, rate), told_clipped)
         doubts = (*told, _offset(whole))
-        return cls(
-            tuple(each - each.mean() for each in stretches),
-            tuple(each for each in doubts if each),
-            clipped,
-        )
+        return cls(stretches, tuple(each for each in doubts if each), clipped)
 
 
-def equal_pieces(stretches: Sequence[Array], longest: float) -> list[Array]:
-    """Cut stretches (n,) into pieces of one length, of so many samples at most.
+@dataclass(frozen=True, eq=False)
+class Pieces:
+    """Pieces of one length of a record, each made when it is read: a record is not held beside itself.
 
-    It is that of the shortest that has half the length of the longest one, or a part of it; what is shorter
-    is left out, and of a long one what makes it slow to transform: a prime length takes three times as long.
+    Attributes
+    ----------
+    size : int
+        Samples of each.
+    cut : tuple of (ndarray (n,), float, float)
+        Samples of each as they were measured, the mean of their stretch, which is taken off, and the size to
+        which it is limited then.
     """
-    most = max(each.size for each in stretches)
-    size = min(each.size for each in stretches if each.size >= 0.5 * most)
-    size //= int(np.ceil(size / longest))
-    if size > SLOW:
-        size = _quick_length(size)
-    return [each[n * size : (n + 1) * size] for each in stretches for n in range(each.size // size)]
+
+    size: int
+    cut: tuple[tuple[Array, float, float], ...]
+
+    @classmethod
+    def of(
+        cls, stretches: Sequence[Array], longest: float, rate: float = 1.0, speed: float = 0.0
+    ) -> "Pieces":
+        """Cut stretches (n,) of a sampling rate and a speed, Hz, into pieces of so many samples at most.
+
+        Their length is that of the shortest that has half the length of the longest one, or a part of it;
+        what is shorter is left out, and of a long one what makes it slow to transform: a prime length takes
+        three times as long. What is larger than a stretch reaches once in two turns is no blow that recurs: a
+        single click, as of a loose cable, would be all that a spectrum shows.
+        """
+        most = max(each.size for each in stretches)
+        size = min(each.size for each in stretches if each.size >= 0.5 * most)
+        size //= int(np.ceil(size / longest))
+        if size > SLOW:
+            size = _quick_length(size)
+        cut = list[tuple[Array, float, float]]()
+        for each in stretches:
+            mean = float(each.mean())
+            turns = each.size / rate * speed
+            reached = _reached(each, mean, max(int(0.5 * turns), 1)) if speed else np.inf
+            parts = (each[n * size : (n + 1) * size] for n in range(each.size // size))
+            cut += [(part, mean, reached) for part in parts]
+        return cls(size, tuple(cut))
+
+    def __len__(self) -> int:
+        """How many there are."""
+        return len(self.cut)
+
+    def __iter__(self) -> Iterator[Array]:
+        """Return one after the other, (n,), without their means."""
+        return (np.clip(samples - mean, -reached, reached) for samples, mean, reached in self.cut)
+
+
+def _reached(values: Array, mean: float, times: int) -> float:
+    """Size that values (n,) have so many times, about a mean."""
+    largest = np.zeros(0)
+    for block in _blocks(values, max(BLOCK, times)):
+        largest = np.concatenate([largest, np.abs(block - mean)])
+        largest = np.partition(largest, -times)[-times:] if largest.size > times else largest
+    return float(largest.min())
+
+
+def _blocks(values: Array, size: int = BLOCK) -> Iterator[Array]:
+    return (values[first : first + size] for first in range(0, values.size, size))
 
 
 def _quick_length(size: int) -> int:
@@ -100,22 +149,23 @@ def _quick_length(size: int) -> int:
 
 
 def _given(signal: ArrayLike, rate: float) -> tuple[Array, float]:
-    """A copy of a signal of numbers and NaN, and its sampling rate, Hz."""
+    """A signal of numbers and NaN, and its sampling rate, Hz."""
     allowed = "a series of numbers, NaN where one is missing"
-    values = np.array(real_array("signal", signal, allowed), dtype=float)
+    values = real_array("signal", signal, allowed)
     require(values.ndim == 1, "signal", f"shape {values.shape}", allowed)
     require(values.size >= FEWEST, "signal", count_of(values.size, "sample"), f"at least {FEWEST}")
-    known = values[~np.isnan(values)]
-    require(known.size, "signal", "no number, NaN throughout", allowed)
-    endless = known[~np.isfinite(known)]
+    require(not np.isnan(values).all(), "signal", "no number, NaN throughout", allowed)
+    endless = values[np.isinf(values)]
     require(not endless.size, "signal", f"{endless[:1].sum()}", allowed)
     return values, positive("sampling rate (Hz)", rate)
 
 
 def _runs(held: Mask) -> NDArray[np.intp]:
     """First place of each run of a condition (n,), and the one behind its last, (runs, 2)."""
-    edges = np.diff(np.concatenate([[0], held.astype(np.int8), [0]]))
-    return np.stack([np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)], axis=1)
+    edges = np.flatnonzero(held[1:] != held[:-1]) + 1
+    first = [0] if held[0] else []
+    last = [held.size] if held[-1] else []
+    return np.concatenate([first, edges, last]).astype(np.intp).reshape(-1, 2)
 
 
 def _between(left_out: Mask, values: Array) -> list[Array]:
@@ -123,12 +173,13 @@ def _between(left_out: Mask, values: Array) -> list[Array]:
     return [values[first:last] for first, last in _runs(~left_out)]
 
 
-def _bridged(values: Array) -> tuple[Mask, str]:
-    """Fill in few missing values, in place; which others are missing (n,), and what is told of those filled
+def _bridged(values: Array) -> tuple[Array, Mask, str]:
+    """Values with few missing ones filled in, which others are missing (n,), and what is told of those filled
     in."""
     missing = np.isnan(values)
     if not missing.any():
-        return missing, ""
+        return values, missing, ""
+    values = values.copy()
     few = [
         (first, last)
         for first, last in _runs(missing)
@@ -139,19 +190,21 @@ def _bridged(values: Array) -> tuple[Mask, str]:
         values[first:last] = np.interp(np.arange(first, last), [first - 1, last], ends)
     count = sum(last - first for first, last in few)
     told = f"{count} missing samples, up to {BRIDGED} in a row, are replaced by straight lines."
-    return np.isnan(values), told if count else ""
+    return values, np.isnan(values), told if count else ""
 
 
 def _stands_still(values: Array, rate: float, still: float) -> tuple[Mask, str]:
     """Where values do not move for so long, s, and what is told of that."""
     stuck = np.zeros(values.size, dtype=bool)
     least = max(still * rate, FEWEST)
-    runs = [(first, last + 1) for first, last in _runs(np.diff(values) == 0.0) if last + 1 - first >= least]
+    runs = _runs(values[1:] == values[:-1])
+    runs[:, 1] += 1  # the one that is like the one before it
+    runs = runs[runs[:, 1] - runs[:, 0] >= least]
     for first, last in runs:
         stuck[first:last] = True
-    if not runs:
+    if not len(runs):
         return stuck, ""
-    first, last = max(runs, key=lambda each: each[1] - each[0])
+    first, last = runs[np.argmax(runs[:, 1] - runs[:, 0])]
     when = f"for {rounded((last - first) / rate)} s, from {rounded(first / rate)} s on"
     where = f"at {rounded(values[first], 4)} {when}"
     return stuck, f"The signal stands still {where}, as of a channel that is stuck: that is left out."
@@ -171,16 +224,11 @@ def _in_stretches(stretches: Sequence[Array], left_out: Mask, rate: float) -> st
 
 def _clipped(values: Array) -> tuple[float, str]:
     """Share of values (n,) at an end at which they are clipped, and what is told of it."""
-    middle = np.median(values)
+    middle = _median(values)
     ends = []
     count = 0
     for end in (values.min(), values.max()):
-        within = np.abs(end - values) / max(abs(end - middle), 1e-300)
-        here = int((within <= AT_THE_END).sum())
-        # of coarse steps the next one is farther away than that share
-        steps = within[within > AT_THE_END]
-        next_step = float(steps.min(initial=1.0)) + AT_THE_END
-        beside = int((steps <= max(BELOW, next_step)).sum())
+        here, beside = _at_the_end(values, end, max(abs(end - middle), 1e-300))
         if here >= CLIPPED and here > FEWER * beside:
             ends.append(rounded(end, 4))
             count += here
@@ -190,6 +238,31 @@ def _clipped(values: Array) -> tuple[float, str]:
     return share, told if ends else ""
 
 
+def _at_the_end(values: Array, end: float, reach: float) -> tuple[int, int]:
+    """How many values (n,) lie at an end, and how many at the next step beside it, which of coarse steps is
+    farther away than `BELOW`."""
+
+    def shares() -> Iterator[Array]:
+        return (np.abs(end - block) / reach for block in _blocks(values))
+
+    here = sum(int((share <= AT_THE_END).sum()) for share in shares())
+    next_step = min(float(share[share > AT_THE_END].min(initial=1.0)) for share in shares()) + AT_THE_END
+    reached = max(BELOW, next_step)
+    beside = sum(int(((share > AT_THE_END) & (share <= reached)).sum()) for share in shares())
+    return here, beside
+
+
+def _median(values: Array) -> float:
+    """Median of values (n,); of a long record only those near it are held beside it."""
+    every = values[:: values.size // SAMPLE + 1]
+    low, high = np.quantile(every, NEAR_MIDDLE)
+    below = sum(int((block < low).sum()) for block in _blocks(values))
+    near = np.sort(np.concatenate([block[(block >= low) & (block <= high)] for block in _blocks(values)]))
+    first = (values.size - 1) // 2 - below
+    last = values.size // 2 - below
+    return float(near[[first, last]].mean() if 0 <= first <= last < near.size else np.median(values))
+
+
 def _percent(share: float) -> str:
     return f"{rounded(100.0 * share, 2)} %"
 
@@ -197,7 +270,8 @@ def _percent(share: float) -> str:
 def _offset(values: Array) -> str:
     """What is told of a mean that is large beside what moves."""
     mean = float(values.mean())
-    rest = float(values.std())
+    squares = sum(float(np.square(block - mean).sum()) for block in _blocks(values))
+    rest = float(np.sqrt(squares / values.size))
     if abs(mean) < OFFSET * rest:
         return ""
     times = f"{rounded(abs(mean) / rest, 2)} times the rms of the rest"

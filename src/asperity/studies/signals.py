@@ -317,7 +317,8 @@ def read_record(
 
 def _check_size(values: Array, source: str) -> None:
     """Refuse a signal whose squares no number holds."""
-    largest = float(np.abs(values[np.isfinite(values)]).max(initial=0.0))
+    known = np.isfinite(values)
+    largest = max(float(values.max(initial=0.0, where=known)), -float(values.min(initial=0.0, where=known)))
     held = largest == 0.0 or LEAST_PEAK < largest < MOST_PEAK
     allowed = f"{rounded(LEAST_PEAK)} to {rounded(MOST_PEAK)} at most"
     require(held, source, f"values of up to {rounded(largest)}", allowed, "Is its type right?")
@@ -349,7 +350,8 @@ def _recorded(file: Path, array: str | None) -> tuple[Array, list[str], float | 
         if (told := rates.rate_in(beside, len(values), file.name)) is not None:
             rate = told[0]
             teller = f"'{told[1]}' says"
-    return guards.scaled(values, 1.0, file.name), titles, rate, teller
+    numbers = values if values.dtype == np.float64 else guards.scaled(values, 1.0, file.name)
+    return numbers, titles, rate, teller
 
 
 def _kind_of(file: Path) -> str:
