@@ -1,5 +1,6 @@
 """Recordings that are clipped, have gaps, stand still or are shifted; and several of one bearing."""
 
+import tracemalloc
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +9,7 @@ from scipy.fft import next_fast_len
 
 from asperity.diagnostics import diagnose, diagnose_together, diagnosis_sentence
 from asperity.diagnostics.prominence import Prominence
-from asperity.diagnostics.recording import Pieces, Recording
+from asperity.diagnostics.recording import Pieces, Recording, _median, _reached
 from asperity.errors import InputError
 from asperity.structures.ball_bearing import BallBearing
 from asperity.studies.signals import read_signal
@@ -198,3 +199,28 @@ def test_progress_of_a_long_record_is_told_piece_by_piece():
     assert {message: done for done, _, message in seen} == dict.fromkeys(
         ("kurtogram", "spectrum", "envelope of the whitened signal", "envelope of the band"), 4
     )
+
+
+def test_a_recording_is_looked_at_beside_no_copy_of_itself():
+    """Masks and blocks beside the samples, and one piece at a time: a text of digits holds eight times its
+    bytes in numbers already."""
+    signal = np.random.default_rng(0).integers(0, 10, 2**20).astype(float)
+    Recording.of(signal[:1_000], RATE)  # imports
+    tracemalloc.start()
+    try:
+        recording = Recording.of(signal, RATE, still=1.0 / SPEED)
+        for piece in Pieces.of(recording.stretches, 20_000.0, RATE, SPEED):
+            assert abs(piece.mean()) < 0.2
+        assert tracemalloc.get_traced_memory()[1] < 1.2 * signal.nbytes
+    finally:
+        tracemalloc.stop()
+
+
+def test_what_is_taken_in_blocks_is_what_all_at_once_is():
+    """Medians of even and odd numbers of samples, of ties and of two lumps; sizes that are reached."""
+    draw = np.random.default_rng(1)
+    lumps = np.concatenate([np.full(40_000, -1.0), np.full(40_000, 3.0)])
+    for values in (draw.normal(size=70_001), draw.normal(size=150_000) ** 3, np.sort(lumps), lumps[::-1]):
+        assert _median(values) == np.median(values)
+        for times in (1, 3, 70_000):
+            assert _reached(values, 0.25, times) == np.sort(np.abs(values - 0.25))[-times]
