@@ -15,6 +15,7 @@ import yaml
 from packaging.version import Version
 
 import asperity
+from asperity.cli import main
 from asperity.kernels import options
 from asperity.reference.law_accuracy import law_map
 from asperity.scenes.result import METHOD
@@ -235,6 +236,25 @@ def test_the_readme_is_short_and_its_commands_exist():
     assert README.count("\n") <= 120
     for command in set(re.findall(r"^asperity (\w+)|&& asperity (\w+)", README, re.MULTILINE)):
         call("".join(command), "--help")
+
+
+def test_commands_that_pages_lead_to_exist_with_their_options():
+    """On the page of questions, and on the doors that lead to it."""
+    pages = [
+        "start/which_command",
+        "index",
+        *(f"{door}/index" for door in ("railway", "bearings", "surfaces")),
+    ]
+    told = " ".join(text(f"docs/{page}.md") for page in pages)
+    said = re.findall(r"asperity ([a-z]+)([^`\n]*)", told)
+    assert len({name for name, _ in said if name in main.commands}) > 10
+    for name, words in said:
+        if name in main.commands:
+            allowed = {each for parameter in main.commands[name].params for each in parameter.opts}
+            assert set(re.findall(r"--[a-z-]+", words)) <= allowed, name
+    for question in ("What do my pads do?", "Is my bearing broken?", "How stiff is this rough contact?"):
+        assert f"| {question} | `asperity " in told
+        assert f"**{question}**" in told
 
 
 def test_the_first_lines_of_the_readme_run(tmp_path):
