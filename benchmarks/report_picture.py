@@ -1,4 +1,4 @@
-"""The picture of a report that README and documentation show, of the case in README's first lines.
+"""The picture of a report that README and documentation show, of the first lines in Python.
 
     python benchmarks/report_picture.py     # docs/pictures/report.png and, for dark screens, report_dark.png
 
@@ -24,8 +24,9 @@ VIEW = {"width": 1000, "height": 1600}
 
 
 def written_page(folder: Path) -> Path:
-    """Run README's first lines in a folder, and find the page that they write."""
-    lines = re.search(r"```python\n(.*?)```", (ROOT / "README.md").read_text(encoding="utf-8"), re.DOTALL)
+    """Run the first lines in Python in a folder, and find the page that they write."""
+    first = (ROOT / "docs/start/index.md").read_text(encoding="utf-8")
+    lines = re.search(r"```python\n(.*?)```", first, re.DOTALL)
     assert lines is not None
     subprocess.run([sys.executable, "-c", lines[1]], cwd=folder, check=True)
     return folder / "page/report.html"
