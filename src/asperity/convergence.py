@@ -16,6 +16,7 @@ from asperity.errors import AsperityError, CaseError, InputError, PhysicsWarning
 from asperity.progress import COMPILED, Progress, counted
 from asperity.scenarios.geometry import window_cells
 from asperity.scenarios.refining import Setting, Way, restricted
+from asperity.scenarios.rim_cells import chosen_cells
 from asperity.scenarios.scene import PreparedCase
 from asperity.scenes import schema as scene
 from asperity.scenes.validity import compared_bands
@@ -122,7 +123,8 @@ def _both(
     prepared: ReadyCase, base: xarray.Dataset, setting: Setting, way: Way, progress: Progress
 ) -> tuple[xarray.Dataset, xarray.Dataset]:
     """Levels of the finer and of the coarser computation; `base` are those of the case."""
-    case = prepared.case.with_(**_as_chosen(prepared), **way.changes)
+    alike = chosen_cells(prepared) if isinstance(prepared, PreparedCase) else {}
+    case = prepared.case.with_(**alike, **way.changes)
     changed: ReadyCase = function_named(case.PREPARED_BY)(case, "case")
     if not setting.laid_anew:
         return _levels(changed.case, "", lambda: changed, progress), base
@@ -134,13 +136,6 @@ def _both(
     if way.coarser:
         return base, twin
     return _levels(changed.case, "", lambda: changed, progress), twin
-
-
-def _as_chosen(prepared: ReadyCase) -> dict[str, str]:
-    """Cells at rims as they were chosen for a case: a grid is compared with one of the same kind."""
-    if not isinstance(prepared, PreparedCase) or prepared.case.contact.rim_cells != "auto":
-        return {}
-    return {"contact.rim_cells": prepared.shape.cells}
 
 
 def on_the_surface_of(small: PreparedCase, large: PreparedCase) -> PreparedCase:

@@ -9,12 +9,15 @@ import pytest
 import xarray
 
 from asperity.cli.running import plan
-from asperity.convergence import _as_chosen, on_the_surface_of
+from asperity.convergence import on_the_surface_of
 from asperity.errors import Grade, InputError
+from asperity.fitting import running as fitting
+from asperity.optimising import running as optimising
+from asperity.optimising.definition import Aim
 from asperity.running import prepare_case
 from asperity.scenarios import problems, rim_cells
 from asperity.scenarios.laws import ReducedCase
-from asperity.scenarios.preparing import Work
+from asperity.scenarios.preparing import Work, with_cells_fixed
 from asperity.scenarios.reducing import samples_of
 from asperity.scenarios.refining import settings_for
 from asperity.scenarios.textures import textures_under
@@ -136,14 +139,35 @@ def test_what_was_chosen_is_told_before_the_run():
 def test_a_grid_is_compared_on_means_over_its_own_cells():
     small = chosen(0.02)
     finer = settings_for(small, np.linspace(-1e-6, 3e-6, 5))[0].ways[0].changes
-    large = prepare_case(small.case.with_(**_as_chosen(small), **finer))
+    large = prepare_case(small.case.with_(**rim_cells.chosen_cells(small), **finer))
     assert large.case.contact.rim_cells == large.shape.cells == "covered"
     found = whole(on_the_surface_of(small, large).textures.path)
     points = whole(large.textures.points.path)
     first, beside = large.textures.before % 2, points.shape[1] // 2 % 2
     expected = cell_means(points[first::2, beside::2])
     np.testing.assert_array_equal(found, expected)
-    assert _as_chosen(prepared(cells="whole")) == {}
+
+
+def test_a_search_keeps_the_cells_of_the_case_that_it_began_with(monkeypatch):
+    """Else levels would jump where a texture that is tried passes the roughness at which cells change."""
+    case, begun = chosen(0.02).case, []
+
+    class Enough(Exception):
+        pass
+
+    def begin(case, *rest):
+        begun.append(case.contact.rim_cells)
+        raise Enough
+
+    monkeypatch.setattr(optimising, "_rolled", begin)
+    monkeypatch.setattr(fitting, "_known", begin)
+    with pytest.raises(Enough):
+        optimising.optimised(case, Aim(rms_at_least="0.02 um"), lambda *_: None)
+    with pytest.raises(Enough):
+        fitting.fitted(case, (), (), lambda *_: None)
+    assert begun == ["covered", "covered"]
+    given = prepared(cells="whole").case
+    assert with_cells_fixed(given) is given
 
 
 def test_a_study_tells_that_its_members_have_unlike_cells():

@@ -12,6 +12,7 @@ from asperity.arguments import Array, NDArray, file_path, require, shown, whole
 from asperity.case import cases
 from asperity.case.any_case import AnyCase, entry_of
 from asperity.case.form import case_key
+from asperity.case.scene import Case
 from asperity.errors import BandsWarning, InputError
 from asperity.fitting import determined, reading
 from asperity.fitting.fitted import Estimate, Fitted, Undetermined
@@ -38,6 +39,7 @@ from asperity.fitting.search import (
     updated_slopes,
 )
 from asperity.progress import Progress, shown_progress
+from asperity.scenarios.preparing import with_cells_fixed
 from asperity.store import Store, made
 from asperity.threads import one_thread_in_linear_algebra
 from asperity.written_numbers import count_of, rounded
@@ -214,6 +216,8 @@ def fitted(
     starts: int | None = None,
 ) -> Fitted:
     """Fit a case to measurements by what may change, as `fit` does."""
+    if isinstance(case, Case):
+        case = with_cells_fixed(case)
     known, before = _known(case, measured, progress)
     problem = Problem(case, known, chosen, of_case=case_key("fit", FORMAT, case), progress=progress)
     received = f"{count_of(len(chosen), 'free key')} and {count_of(problem.count, 'value')}"

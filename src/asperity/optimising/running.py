@@ -24,7 +24,7 @@ from asperity.optimising.definition import (
 from asperity.progress import Progress, shown_progress
 from asperity.reporting.data import written_units
 from asperity.running import run
-from asperity.scenarios.preparing import prepare
+from asperity.scenarios.preparing import prepare, with_cells_fixed
 from asperity.scenes import result
 from asperity.spectra import band_energies, level_of
 from asperity.store import Store, made
@@ -214,6 +214,7 @@ def optimised(case: scene.Case, aim: Aim, progress: Progress) -> Optimised:
     before = bands_of(case, aim.longest, aim.shortest)
     if aim.lateral is not None and before.lateral is None:
         raise InputError("lateral", "bounds for a line, which has no lay", "a surface", "Remove the key.")
+    case = with_cells_fixed(case)
     limits = aim.limits(before.levels[before.changed])
     numbers = itertools.count(1)
 

@@ -33,7 +33,7 @@ from asperity.scenarios.coverage import problems_of_coverage
 from asperity.scenarios.doubts import doubt_sizes
 from asperity.scenarios.geometry import geometry_of, window_cells
 from asperity.scenarios.problems import by_key, problems, refuse
-from asperity.scenarios.rim_cells import with_rims
+from asperity.scenarios.rim_cells import chosen_cells, with_rims
 from asperity.scenarios.scanned_positions import table_stride
 from asperity.scenarios.scanned_states import states_expected
 from asperity.scenarios.scene import PreparedCase, scene_of
@@ -73,6 +73,11 @@ def prepare(case: Case, source: str = "case") -> PreparedCase:
     seconds = {"textures": time.perf_counter() - begin}
     processor = time.process_time() - spent
     return replace(prepared, caught=tuple(caught), seconds=seconds, processor=processor)
+
+
+def with_cells_fixed(case: Case) -> Case:
+    """A case that is searched about: cells at rims are those of its own texture, whatever is tried."""
+    return case.with_(**chosen_cells(prepare(case))) if case.contact.rim_cells == "auto" else case
 
 
 def _within_the_map(case: Case, textures: Textures) -> Case | None:
