@@ -12,7 +12,8 @@ from asperity.case.bodies import Bodies, WheelOnRail
 from asperity.case.scene import Case
 from asperity.cli.running import law_summaries
 from asperity.optimising.definition import A_WEIGHTED, line_frequencies, measures_of
-from asperity.reporting.headline import lights, validity
+from asperity.reporting import data
+from asperity.reporting.headline import force_answers, lights, validity
 from asperity.reporting.page import answers_of
 from asperity.reporting.sound import _sound_power
 from asperity.scenes.figures import effects, measured, noise, sources
@@ -135,6 +136,29 @@ def test_comparison_optimisation_and_what_is_heard_have_it(run):
     assert ("without the wheel" in measure.meaning) == ("wheel" not in own_parts(tree))
     band, heard = _sound_power(tree)
     assert a_weighted_total(heard, band)[0] == pytest.approx(total(tree), abs=1e-9)
+
+
+@pytest.mark.parametrize("kind", ["up and down", "bogie"])
+def test_forces_of_all_contacts_are_those_of_tile_study_comparison_and_json(kind, runs):
+    """Mean and variance over all contacts, and the largest force of any, wherever it is."""
+    case, tree = CASES[kind], runs(CASES[kind])
+    force = tree["rolling/contact_force"].sel(law="linear").transpose("contact", "time").values
+    lost = tree["rolling/contact_loss_share"].sel(law="linear").max()
+    rms, peak = np.sqrt(force.var(axis=1).mean()), force.max()
+    study, compared = asperity.study(case, {"seed": [case.seed]}).isel(seed=0), asperity.compare(tree, tree)
+    (told,) = law_summaries(tree)
+    for table in (study.sel(law="linear"), compared.isel(run=0).sel(law="linear"), told):
+        assert float(table["mean_force"]) == pytest.approx(force.mean(), rel=1e-12)
+        assert float(table["rms_force"]) == pytest.approx(rms, rel=1e-12)
+        assert float(table["peak_force"]) == peak
+        assert float(table["contact_loss_share"]) == float(lost)
+    several = len(force) > 1
+    assert study["peak_force"].attrs["long_name"].endswith(", of 2 contacts") is several
+    (tile, _) = force_answers(tree).numbers
+    largest = f"at most {data.engineering(float(peak), 'N')}"
+    assert tile.value == data.engineering(float(rms), "N")
+    place = f" at contact {force.max(axis=1).argmax() + 1}" if several else ""
+    assert tile.note.endswith(largest + place)
 
 
 @pytest.mark.parametrize("kind", ["sideways", "bogie"])

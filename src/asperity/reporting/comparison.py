@@ -1,7 +1,7 @@
 """What differs between runs: keys of their cases, levels, stiffness, filters, in one dataset."""
 
 import json
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -24,12 +24,6 @@ UNLIKE, UNLIKE_RUNS = "the total of one of both is without its wheel", "without_
 DEVIATION = "level_deviation"
 MAIN = "main law"
 """Stands for the first law of each run where those differ."""
-_REDUCED: tuple[Callable[[Any], Any], ...] = (np.nanmean, np.nanstd, np.nanmax)
-OF_FORCE: Mapping[str, tuple[str, Entry, Callable[[Any], Any]]] = {
-    name: (what, rolling.CONTACT_FORCE, reduce)
-    for (name, what), reduce in zip(rolling.FORCES.items(), _REDUCED, strict=True)
-} | {entry.name: (entry.long_name, entry, float) for entry in rolling.LOSSES}
-"""Numbers of each law: what they are, what they are taken from, and how."""
 _WORKING = (contact.WORKING_LOAD, contact.WORKING_APPROACH, contact.WORKING_STIFFNESS)
 OF_CONTACT = (*_WORKING, contact.CONTACT_AREA_RATIO)
 """Attributes of the reduced contact that are compared."""
@@ -174,10 +168,8 @@ def _of_run(run: NamedRun, levels: Sequence[Entry], *, main: bool) -> xarray.Dat
     if levels and data.present(tree, spectra.LEVEL_DEVIATION, spectra.BAND):
         meaning = "standard deviation of a level by the chance of one record"
         add(DEVIATION, _placed(data.variable_of(tree, spectra.LEVEL_DEVIATION)), "dB", meaning)
-    for name, (meaning, entry, reduce) in OF_FORCE.items():
-        of_laws = {law: float(reduce(data.of_law(tree, entry, law))) for law in data.laws(tree, entry)}
-        numbers = xarray.DataArray(list(of_laws.values()), {"law": list(of_laws)})
-        add(name, numbers, entry.units, meaning)
+    for name, (numbers, units, meaning) in data.contact_numbers(tree).items():
+        add(name, numbers, units, meaning)
     for of in OF_CONTACT:
         number = data.number(tree, of)
         add(of.name, xarray.DataArray(np.nan if number is None else number), of.units, of.meaning)

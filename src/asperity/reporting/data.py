@@ -177,9 +177,50 @@ def of_contacts(tree: DataTree, entry: Entry, law: str) -> chart.Numbers:
     return np.asarray((found if several else found.expand_dims(rolling.CONTACT.name)).values, dtype=float)
 
 
+def force_numbers(tree: DataTree, law: str) -> dict[str, float]:
+    """Mean, rms and largest force of one law over all contacts, N, named as in `rolling.FORCES`.
+
+    The rms is about the mean of each contact.
+    """
+    forces = of_contacts(tree, rolling.CONTACT_FORCE, law)
+    mean = float(np.nanmean(np.nanmean(forces, axis=1)))
+    rms = float(np.sqrt(np.nanmean(np.nanvar(forces, axis=1))))
+    return dict(zip(rolling.FORCES, (mean, rms, float(np.nanmax(forces))), strict=True))
+
+
+def loss_numbers(tree: DataTree, law: str) -> tuple[dict[str, float], int]:
+    """Loss of contact of one law, named as in `rolling.LOSSES`, where it is lost longest, and that place."""
+    losses = [of_contacts(tree, entry, law) for entry in rolling.LOSSES]
+    worst = int(np.argmax(np.nan_to_num(losses[0], nan=-1.0)))
+    names = (entry.name for entry in rolling.LOSSES)
+    return dict(zip(names, (float(each[worst]) for each in losses), strict=True)), worst
+
+
+def contact_numbers(tree: DataTree) -> dict[str, tuple[DataArray, str, str]]:
+    """Numbers of the force and of its losses by law, their units, and what they are, of how many contacts."""
+    count = _contacts_of(tree)
+    every, worst = (f", of {count} contacts", ", where it is lost longest") if count > 1 else ("", "")
+    told = {name: (rolling.CONTACT_FORCE, f"{what}{every}") for name, what in rolling.FORCES.items()}
+    told |= {entry.name: (entry, f"{entry.long_name}{worst}") for entry in rolling.LOSSES}
+    found = {law: force_numbers(tree, law) for law in laws(tree, rolling.CONTACT_FORCE)}
+    lost = {law: loss_numbers(tree, law)[0] for law in laws(tree, rolling.CONTACT_LOSS_SHARE)}
+    return {
+        name: (_by_law(found if name in rolling.FORCES else lost, name), entry.units, what)
+        for name, (entry, what) in told.items()
+    }
+
+
+def _by_law(numbers: Mapping[str, Mapping[str, float]], name: str) -> DataArray:
+    return DataArray([each[name] for each in numbers.values()], {"law": list(numbers)}, "law")
+
+
+def _contacts_of(tree: DataTree) -> int:
+    return tree["rolling"].sizes.get(rolling.CONTACT.name, 1) if "rolling" in tree.children else 1
+
+
 def of_first_contact(tree: DataTree) -> str:
     """Say of what is shown of the first of several contacts that it is; nothing of a single one."""
-    count = tree["rolling"].sizes.get(rolling.CONTACT.name, 1) if "rolling" in tree.children else 1
+    count = _contacts_of(tree)
     return f"Of contact 1 of {count}; the others are in the chapter All contacts." if count > 1 else ""
 
 

@@ -155,8 +155,7 @@ def force_answers(tree: DataTree) -> Answers:
     forces = data.of_contacts(tree, rolling.CONTACT_FORCE, main)
     count = len(forces)
     largest = np.nanmax(forces, axis=1)
-    mean = float(np.nanmean(forces))
-    rms = float(np.sqrt(np.nanmean(np.nanvar(forces, axis=1))))
+    mean, rms, _ = data.force_numbers(tree, main).values()
     rms *= bool(np.ptp(forces, axis=1).any())  # of what does not vary, the mean is rounded
     top = data.engineering(float(largest.max()), "N") + _at_contact(int(largest.argmax()), count)
     share = (
@@ -177,13 +176,12 @@ def _loss(tree: DataTree, main: str) -> Iterator[HeadlineNumber]:
     """Loss of contact, of several contacts at that which is lost longest."""
     if main not in data.laws(tree, rolling.CONTACT_LOSS_SHARE):
         return
-    losses = [data.of_contacts(tree, entry, main) for entry in rolling.LOSSES]
-    worst = int(np.nanargmax(losses[0]))
-    share, events, longest = (float(of_contacts[worst]) for of_contacts in losses)
+    found, worst = data.loss_numbers(tree, main)
+    share, events, longest = found.values()
     lost = "once" if events == 1 else f"{events:.0f} times"
     value = data.in_percent(share)
     told = f"lost {lost}, longest {data.engineering(longest, 's')}"
-    told += _at_contact(worst, len(losses[0]))
+    told += _at_contact(worst, tree["rolling"].sizes.get(rolling.CONTACT.name, 1))
     if data.law_entry(tree, main).may_pull:
         value = "–"
         told = f"{main} cannot lose it: its force may pull"

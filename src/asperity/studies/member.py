@@ -12,6 +12,7 @@ import xarray
 from numpy.typing import NDArray
 
 from asperity.errors import TOO_MUCH_MEMORY, AsperityError, ComputationError
+from asperity.reporting.data import contact_numbers
 from asperity.results import variable
 from asperity.scenes import schema as scene
 from asperity.schema import Entry, bearing, contact, provenance, rolling, spectra
@@ -26,13 +27,15 @@ KEPT = (
     spectra.START_SHARE,
     *spectra.FORCE_LEVEL_DIFFERENCES.values(),
     spectra.FORCE_LEVEL_DIFFERENCE_TO_REFERENCE,
-    *rolling.LOSSES,
     contact.TRACK_RMS,
     contact.TRACK_STIFFNESS,
 )
 """What is kept of all results, beside what the schema of a scene says."""
 OF_CONTACTS = spectra.CONTACT_FORCE_LEVEL
-"""What is kept of every contact, where there are several; all else by contact is that of the first."""
+"""What is kept of every contact, where there are several.
+
+Numbers of forces and of losses of contact are those of all of them, all else by contact is that of the first.
+"""
 FACTS = (
     contact.WORKING_APPROACH,
     contact.WORKING_STIFFNESS,
@@ -134,9 +137,8 @@ def _of_bodies(tree: xarray.DataTree) -> dict[str, Any]:
     every = tree[OF_CONTACTS.path]
     if every.sizes[rolling.CONTACT.name] > 1:
         found[OF_CONTACTS.name] = every
-    force = tree["rolling"].to_dataset()[rolling.CONTACT_FORCE.name].isel(first, drop=True)
-    for (name, what), of in zip(rolling.FORCES.items(), (force.mean, force.std, force.max), strict=True):
-        found[name] = _described(of("time"), "N", what)
+    for name, (numbers, units, what) in contact_numbers(tree).items():
+        found[name] = _described(numbers, units, what)
     lowering = contact.RUNNING_IN_LOWERING
     if lowering.name in tree[lowering.group]:
         most = tree[lowering.group].to_dataset()[lowering.name].max(contact.RUNNING_IN_PASS.name)
@@ -154,6 +156,7 @@ def names_kept() -> set[str]:
         *LOADS,
         VELOCITY_LEVEL,
         *rolling.FORCES,
+        *(entry.name for entry in rolling.LOSSES),
         *(each.name for each in entries),
         *(fact.name for fact in FACTS),
     }
