@@ -9,7 +9,7 @@ from scipy.fft import next_fast_len
 
 from asperity.diagnostics import diagnose, diagnose_together, diagnosis_sentence
 from asperity.diagnostics.prominence import Prominence
-from asperity.diagnostics.recording import Pieces, Recording, _median, _reached
+from asperity.diagnostics.recording import Recording, SignalPieces, _median, _reached
 from asperity.errors import InputError
 from asperity.structures.ball_bearing import BallBearing
 from asperity.studies.signals import read_signal
@@ -143,18 +143,18 @@ def test_an_empty_cell_is_a_missing_sample(tmp_path):
 
 def test_pieces_are_as_long_as_the_shortest_that_is_half_of_the_longest():
     stretches = [np.arange(float(n)) for n in (1_000, 640, 499, 2_000 // 2)]
-    assert [each.size for each in Pieces.of(stretches, 1e9)] == [640, 640, 640]
-    assert [each.size for each in Pieces.of(stretches, 320.0)] == [320] * 9
-    assert [each.size for each in Pieces.of(stretches[:1], 1_000.0)] == [1_000]
+    assert [each.size for each in SignalPieces.of(stretches, 1e9)] == [640, 640, 640]
+    assert [each.size for each in SignalPieces.of(stretches, 320.0)] == [320] * 9
+    assert [each.size for each in SignalPieces.of(stretches[:1], 1_000.0)] == [1_000]
 
 
 @pytest.mark.parametrize("size", [262_147, 999_983, 1_048_576])
 def test_long_pieces_have_lengths_that_are_quick_to_transform(size):
     """262 147 and 999 983 are primes, which take three times as long; short pieces stay whole."""
-    (piece,) = Pieces.of([np.zeros(size)], 1e9)
+    (piece,) = SignalPieces.of([np.zeros(size)], 1e9)
     assert 0.997 * size <= piece.size <= size
     assert piece.size == next_fast_len(piece.size)
-    (whole,) = Pieces.of([np.zeros(99_991)], 1e9)
+    (whole,) = SignalPieces.of([np.zeros(99_991)], 1e9)
     assert whole.size == 99_991
 
 
@@ -209,7 +209,7 @@ def test_a_recording_is_looked_at_beside_no_copy_of_itself():
     tracemalloc.start()
     try:
         recording = Recording.of(signal, RATE, still=1.0 / SPEED)
-        for piece in Pieces.of(recording.stretches, 20_000.0, RATE, SPEED):
+        for piece in SignalPieces.of(recording.stretches, 20_000.0, RATE, SPEED):
             assert abs(piece.mean()) < 0.2
         assert tracemalloc.get_traced_memory()[1] < 1.2 * signal.nbytes
     finally:

@@ -13,7 +13,7 @@ from asperity.diagnostics.envelopes import above_frequency
 from asperity.diagnostics.hypotheses import FINE, NEAR, BearingRecord, Hypothesis, Tone
 from asperity.diagnostics.kurtogram import Kurtogram, kurtogram
 from asperity.diagnostics.prominence import HARMONICS, LOWEST_PLACE
-from asperity.diagnostics.recording import Pieces, Recording
+from asperity.diagnostics.recording import Recording, SignalPieces
 from asperity.progress import Progress, counted
 from asperity.written_numbers import rounded
 
@@ -221,7 +221,7 @@ def diagnose_together(
     recordings = [Recording.of(each, rate, still=1.0 / told) for each in signals]
     stretches = [each for recording in recordings for each in recording.stretches]
     longest = LONGEST * rate / told
-    duration = Pieces.of(stretches, longest).size / rate
+    duration = SignalPieces.of(stretches, longest).size / rate
     part, tone = max(tones.items(), key=lambda each: each[1].order)
     blows = f"the blows of the {NAMES[part]} at {rounded(tone.order * told, 4)} Hz"
     received = f"{rounded(rate, 6)} Hz"
@@ -233,7 +233,7 @@ def diagnose_together(
     received = f"{rounded(duration)} s"
     allowed = f"at least {rounded(needed)} s, to resolve {lines}"
     require(duration >= needed, "duration of the signal", received, allowed, "Record longer.")
-    pieces = Pieces.of(stretches, longest, rate, told)
+    pieces = SignalPieces.of(stretches, longest, rate, told)
     reached = HARMONICS * tone.order * told
     seen = Kurtogram.mean(_kurtograms(pieces, rate, reached, progress))
     record = BearingRecord.of(pieces, rate, seen, band or _ringing_band(seen, rate, reached), progress)
@@ -243,7 +243,7 @@ def diagnose_together(
 
 
 def _kurtograms(
-    pieces: Pieces, rate: float, reached: float, progress: Progress | None
+    pieces: SignalPieces, rate: float, reached: float, progress: Progress | None
 ) -> Iterator[Kurtogram]:
     """Kurtogram of each piece above the lines that an envelope shall show, up to a frequency, Hz.
 

@@ -11,7 +11,7 @@ from asperity.diagnostics.envelopes import mean_spectrum, prewhitened
 from asperity.diagnostics.kurtogram import Kurtogram
 from asperity.diagnostics.lines import STANDS_OUT
 from asperity.diagnostics.prominence import LOWEST_PLACE, Prominence
-from asperity.diagnostics.recording import Pieces
+from asperity.diagnostics.recording import SignalPieces
 from asperity.progress import Progress, counted
 
 RANGE = 4.2
@@ -138,7 +138,7 @@ class BearingRecord:
     @classmethod
     def of(
         cls,
-        pieces: Pieces,
+        pieces: SignalPieces,
         rate: float,
         kurtogram: Kurtogram,
         limits: tuple[float, float],

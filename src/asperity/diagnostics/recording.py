@@ -76,7 +76,7 @@ class Recording:
 
 
 @dataclass(frozen=True, eq=False)
-class Pieces:
+class SignalPieces:
     """Pieces of one length of a record, each made when it is read: a record is not held beside itself.
 
     Attributes
@@ -94,7 +94,7 @@ class Pieces:
     @classmethod
     def of(
         cls, stretches: Sequence[Array], longest: float, rate: float = 1.0, speed: float = 0.0
-    ) -> "Pieces":
+    ) -> "SignalPieces":
         """Cut stretches (n,) of a sampling rate and a speed, Hz, into pieces of so many samples at most.
 
         Their length is that of the shortest that has half the length of the longest one, or a part of it;
