@@ -6,7 +6,7 @@ count as far as they are covered; the reference are 24 covered ones. With ``--ta
 `direct`, on grids of the same cells.
 
     python benchmarks/direct_cells.py --textures 4
-    python benchmarks/direct_cells.py --textures 2 --table
+    python benchmarks/direct_cells.py --textures 4 --table
 """
 
 import argparse
