@@ -6,6 +6,7 @@ import scipy.signal
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
+from scipy.fft import next_fast_len
 
 from asperity import spectra
 from refusals import refusals
@@ -118,6 +119,12 @@ test_what_is_wrong_is_said = refusals(
 def test_a_record_beyond_memory_is_a_mean_of_segments_that_fill_it(monkeypatch):
     """Of at most 4 million samples each; its variance stays, and a shorter one is taken as it is."""
     assert spectra.longest_segment(2**22) == 2**22
+    for samples in (2**20 - 3, 2**20):
+        assert spectra.longest_segment(samples) == samples
+    for samples in (1_299_709, 3_999_971):  # primes
+        length = spectra.longest_segment(samples)
+        assert 0.997 * samples <= length <= samples
+        assert next_fast_len(length) == length
     for samples in (2**22 + 1, 8_000_000, 33_554_432):
         length = spectra.longest_segment(samples)
         assert length <= 2**22

@@ -36,9 +36,9 @@ def psd(signal: ArrayLike, spacing: float, *, segment: int | None = None) -> tup
     is in U² per Hz or per cycle per metre. The mean over the whole record is removed. The sum of the PSD
     times the frequency step is the variance of the signal, weighted by the squared windows.
 
-    By default the whole record is one segment, see `longest_segment`. Segments of fewer samples, which
-    overlap by half, give a smoother estimate and a coarser frequency step, 1/(segment · spacing). P. D.
-    Welch, IEEE Trans. Audio Electroacoust. 15 (1967) 70-73.
+    By default the whole record is one segment, but for long ones, see `longest_segment`. Segments of fewer
+    samples, which overlap by half, give a smoother estimate and a coarser frequency step, 1/(segment ·
+    spacing). P. D. Welch, IEEE Trans. Audio Electroacoust. 15 (1967) 70-73.
     """
     from scipy.fft import rfft  # not where only bands are looked up
 
@@ -83,15 +83,32 @@ ROUND = 2**14
 """Numbers of samples that are multiples of this are transformed fast."""
 
 
-def longest_segment(samples: int) -> int:
-    """Samples of a segment by default: the whole record, of one of more than 4 million samples fewer.
+SLOW = 2**20
+"""Samples from which on a number with a large prime factor costs: three times the time, and seven times the
+memory of what is transformed."""
 
-    Such segments are as long as possible, and reach from its beginning nearly to its end.
+
+def longest_segment(samples: int) -> int:
+    """Samples of a segment by default: the whole record, of one of more than a million samples fewer.
+
+    Up to 4 million all but some thousandths at its end, so that it is quick to transform; beyond, segments
+    are as long as possible, and reach from its beginning nearly to its end.
     """
     if samples <= LONGEST_SEGMENT:
-        return samples
+        return samples if samples <= SLOW else quick_length(samples)
     segments = math.ceil(2 * samples / LONGEST_SEGMENT) - 1
     return 2 * samples // (segments + 1) // ROUND * ROUND
+
+
+def quick_length(samples: int) -> int:
+    """Largest length up to a number of samples whose prime factors are at most 11, but for a few thousandths
+    of it."""
+    from scipy.fft import next_fast_len
+
+    shorter = samples
+    while next_fast_len(shorter) > samples:
+        shorter -= 1 + samples // 10_000
+    return int(next_fast_len(shorter))
 
 
 SEGMENT = (0.025, 0.2)

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.arguments import Array, ArrayLike, positive, real_array, require
+from asperity.spectra import quick_length
 from asperity.written_numbers import count_of, rounded
 
 Mask = NDArray[np.bool_]
@@ -106,7 +107,7 @@ class SignalPieces:
         size = min(each.size for each in stretches if each.size >= 0.5 * most)
         size //= int(np.ceil(size / longest))
         if size > SLOW:
-            size = _quick_length(size)
+            size = quick_length(size)
         cut = list[tuple[Array, float, float]]()
         for each in stretches:
             mean = float(each.mean())
@@ -136,16 +137,6 @@ def _reached(values: Array, mean: float, times: int) -> float:
 
 def _blocks(values: Array, size: int = BLOCK) -> Iterator[Array]:
     return (values[first : first + size] for first in range(0, values.size, size))
-
-
-def _quick_length(size: int) -> int:
-    """Largest length up to a size whose prime factors are at most 11, but for a few thousandths of it."""
-    from scipy.fft import next_fast_len
-
-    shorter = size
-    while next_fast_len(shorter) > size:
-        shorter -= 1 + size // 10_000
-    return int(next_fast_len(shorter))
 
 
 def _given(signal: ArrayLike, rate: float) -> tuple[Array, float]:
