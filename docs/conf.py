@@ -19,6 +19,7 @@ release = version = asperity.__version__
 extensions = [
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
+    "sphinx.ext.viewcode",  # source beside each name of the reference, without a network
     "numpydoc",
     "myst_nb",
     "sphinx_design",
@@ -74,9 +75,16 @@ html_title = f"asperity {release}"
 html_math_renderer = "mathml"
 html_static_path = ["_static"]
 html_css_files = ["asperity.css"]
+html_js_files = ["copy.js"]
+html_favicon = "_static/logo.svg"
 html_copy_source = html_show_sourcelink = False
 html_theme_options = {
-    "logo": {"text": "asperity"},
+    "logo": {
+        "text": f"asperity {release}",
+        "image_light": "_static/logo.svg",
+        "image_dark": "_static/logo.svg",
+        "alt_text": "asperity",
+    },
     "navbar_align": "left",
     "header_links_before_dropdown": 9,
     "navigation_with_keys": False,
