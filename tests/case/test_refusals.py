@@ -126,9 +126,9 @@ bodies: [beam] supports = ["0 m"] → none where an end is held
 bodies: [beam] supports = ["0.3 m", "1.2 m"] → different positions on the beam of 1 m
 bodies: [beam] supports = ["0.3 m"] | support = "free" → two supports or more
 bodies: [noise] rail_distance = "1.5 m" → noise.rail_distance: received a key of a track; allowed: what a beam
-bodies: [sideways] friction = 0.2 → sideways.friction: received a key of a track
-bodies: [creep] spin = "1 rad/m" → creep.spin: received a key of a track
+bodies: [sideways] contact_place = "1 mm" → sideways.contact_place: received a key of a track
 ball: [sideways] friction = 0.2 → sideways: received an unknown key
+ball: [creep] spin = "9000 rad/m" → creep.spin: received 9000 rad/m; allowed: at most
 """
 
 

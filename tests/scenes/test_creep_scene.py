@@ -6,8 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import asperity
+from asperity.case.beam import BallOnBeam
 from asperity.case.bodies import WheelOnRail
 from asperity.contact.hertz import stick_stiffness
+from asperity.errors import CaseError
 from asperity.reference.materials import MATERIALS
 from asperity.scenarios.preparing import prepare
 from asperity.scenes import schema
@@ -19,7 +22,7 @@ from asperity.schema import tree
 from asperity.structures.lateral_rail import LateralTrack, wheel_receptances
 from asperity.structures.squeal import ringing_modes, standing_modes
 from asperity.studies.member import kept
-from small_cases import HEARD
+from small_cases import BALL, BODIES, HEARD
 
 ATTACK, SPEED = 0.012, 20.0
 FALLING = {"angle_of_attack": ATTACK, "kinetic": 0.5, "falling_velocity": 0.3}
@@ -65,7 +68,7 @@ def test_a_wheel_that_heads_for_the_field_side_creeps_to_the_other_and_is_pushed
     driven = -SPEED * (along * 0.001 + across * (math.tan(ATTACK) + 0.002) + moment * 0.2)
     assert both[schema.SAMPLE_HEAT][0] == pytest.approx(driven, rel=1e-12)
     assert creeping({}) == creeping({"angle_of_attack": 0.0}) == {}
-    asked = friction_of(WheelOnRail(**KEYS | {"creep": FALLING, "sideways": {"friction": 0.4}}))
+    asked = friction_of(WheelOnRail(**KEYS | {"creep": FALLING, "contact": {"friction": 0.4}}))
     assert (asked.static, asked.kinetic, asked.velocity) == (0.4, 0.5, 0.3)
 
 
@@ -207,3 +210,43 @@ def test_the_page_says_whether_it_squeals_and_shows_where_it_slips(computed, fal
     assert of_study["mean_friction_power"] == falling[schema.MEAN_FRICTION_POWER]
     rigid = replace(computed, scene=replace(computed.scene, modes=None))
     assert "Whether it squeals is not known" in answer(creep_group(rigid))
+
+
+@pytest.mark.parametrize("kind", ["ball-on-beam", "bodies"])
+def test_whatever_rolls_creeps_and_does_not_squeal(kind):
+    """Full slip: µ F against the creepage and µ F V ξ of heat, at every moment and contact; SI from here."""
+    keys = ({"ball-on-beam": BALL, "bodies": BODIES}[kind]) | {"laws": ["linear"], "duration": "5 ms"}
+    contact = keys["contact"] | {"friction": 0.05}
+    result = asperity.run(keys | {"contact": contact, "creep": {"longitudinal": 0.03}})
+    rolled = result["rolling"]
+    force = rolled["contact_force"].values
+    assert rolled["way"].values.tolist() == ["along", "across"]
+    np.testing.assert_allclose(rolled["friction_force"].sel(way="along"), -0.05 * force, rtol=2e-3)
+    np.testing.assert_allclose(rolled["friction_force"].sel(way="across"), 0.0, atol=1e-6 * force.max())
+    np.testing.assert_allclose(rolled["friction_power"], 0.05 * force * 1.0 * 0.03, rtol=3e-3)
+    assert rolled["full_slip_share"].values.tolist() == [1.0]
+    assert creep_answers(result) is None
+    assert all(figure.drawn(result).caption for figure in CREEP[:2])
+    assert friction_table(result).rows[0][0].text == "smooth"
+    assert "Kalker" in str(result.attrs["citations"])
+
+
+def test_friction_of_a_case_is_a_key_of_its_contact_and_still_read_by_its_old_name():
+    with pytest.warns(FutureWarning, match=r"\[sideways\] friction is now contact\.friction: write that\."):
+        old = WheelOnRail(**KEYS | {"sideways": {"friction": 0.2, "contact_place": "5 mm"}})
+    new = WheelOnRail(**KEYS | {"sideways": {"contact_place": "5 mm"}}).with_(**{"contact.friction": 0.2})
+    assert old == new
+    with pytest.raises(CaseError, match=r"\[sideways\] friction: received with contact\.friction"):
+        new.with_(**{"sideways.friction": 0.3})
+
+
+def test_spin_moves_the_rim_of_a_contact_no_faster_than_creepages_may():
+    """A tenth over the larger semi-axis: of a wheel some 15 rad/m, of a ball hundreds."""
+    most = {"wheel": (WheelOnRail, KEYS), "ball": (BallOnBeam, {"surface": {"rms": "1 um"}})}
+    for kind, keys in most.values():
+        case = kind(**keys)
+        smooth = case.smooth_contact
+        rim = 0.1 / max(smooth.semi_axes(smooth.approach(case.rolling.contact_load)))
+        kind(**keys | {"creep": {"spin": 0.99 * rim}})
+        with pytest.raises(CaseError, match=r"a creepage of 0\.1 at the contact.s rim"):
+            kind(**keys | {"creep": {"spin": 1.01 * rim}})

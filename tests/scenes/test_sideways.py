@@ -70,7 +70,10 @@ def assert_levels(found, frequency, density, band, low=180.0):
 @pytest.mark.parametrize("way", [{"contact_place": PLACE}, LEANING])
 def test_the_lateral_force_and_the_rail_are_those_of_both_forces_at_every_place(runs, way):
     """T/F = −α_lv/(α_ll + 1/k_T), and the power of (F, T) as the vertical force is spread over the bay."""
-    case, head = WheelOnRail(**CASE | {"sideways": way}), way.get("contact_place", HEAD)
+    case, head = (
+        WheelOnRail(**CASE | {"sideways": way}).with_(**{"contact.friction": 0.01}),
+        way.get("contact_place", HEAD),
+    )
     side, spectra = runs(case)["sideways"], runs(case)["spectra"]
     frequency, force, band = (spectra[name].values for name in ("frequency", "force_psd", "band"))
     places, share, spread = by_places(case, frequency, head=head)
@@ -124,8 +127,8 @@ def test_modes_of_the_wheel_follow_both_forces(runs):
 
 def test_twice_as_far_off_on_the_other_side_it_is_twice_as_much_and_slips_on_ice(runs, off):
     """6 dB in force and sound; beyond friction by a normal distribution of the lateral force."""
-    way = {"contact_place": -2.0 * PLACE, "friction": 0.01}
-    tree = runs(WheelOnRail(**CASE | {"sideways": way}))
+    way = {"contact_place": -2.0 * PLACE}
+    tree = runs(WheelOnRail(**CASE | {"sideways": way}).with_(**{"contact.friction": 0.01}))
     near, far, spectra, twice = off["sideways"], tree["sideways"], tree["spectra"], 20.0 * math.log10(2.0)
     change = far["lateral_force_level"] - near["lateral_force_level"]
     np.testing.assert_allclose(change, twice, atol=1e-6)

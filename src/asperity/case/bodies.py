@@ -1,5 +1,6 @@
 """Bodies roll, one or many, over any structure: the scene with all its choices; and a wheel on a rail."""
 
+import warnings
 from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar
 
@@ -11,11 +12,11 @@ from asperity.case.form import Inner, section
 from asperity.case.rolled_over import RolledOver, StructureKeys, TrackKeys
 from asperity.case.scene import Case
 from asperity.case.sections import NoiseKeys
-from asperity.case.sideways import CreepKeys, SidewaysKeys
+from asperity.case.sideways import SidewaysKeys
 from asperity.case.surface import Surface
 from asperity.case.time_steps import on_grid
 from asperity.errors import InputError
-from asperity.parameters import Choice, key
+from asperity.parameters import Choice, Problems, key
 from asperity.structures.body import GRAVITY
 from asperity.units import written
 from asperity.written_numbers import rounded
@@ -54,7 +55,22 @@ class OverTrack(Case):
     sideways: SidewaysKeys = section(
         SidewaysKeys, "where a rail is touched, and what moves sideways, by frequency", last=True
     )
-    creep: CreepKeys = section(CreepKeys, "how wheels creep on a rail, and whether they squeal", last=True)
+
+    @classmethod
+    def prepared(cls, given: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Read the coefficient of friction by the name that it had as a key of a track, with a warning."""
+        sideways = given.get("sideways")
+        if not isinstance(sideways, Mapping) or "friction" not in sideways:
+            return super().prepared(given)
+        contact = given.get("contact") or {}
+        if not isinstance(contact, Mapping) or "friction" in contact:
+            raise Problems(
+                [InputError("[sideways] friction", "with contact.friction", "contact.friction alone")]
+            )
+        warnings.warn("[sideways] friction is now contact.friction: write that.", FutureWarning, stacklevel=2)
+        others = {name: value for name, value in sideways.items() if name != "friction"}
+        moved = {"sideways": others, "contact": {**contact, "friction": sideways["friction"]}}
+        return super().prepared({**given, **moved})
 
 
 class Bodies(OverTrack):

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 from asperity.case.any_case import LAW, AnyCase
 from asperity.case.body import Rolling
 from asperity.case.chosen_lengths import chosen_lengths
+from asperity.case.creep import MOST_CREEPAGE, CreepKeys
 from asperity.case.form import section
 from asperity.case.ready_lists import NamedChanges
 from asperity.case.rolled_over import RolledOver, TrackKeys
@@ -25,7 +26,7 @@ from asperity.written_numbers import rounded
 
 if TYPE_CHECKING:
     from asperity.case.across import Meeting
-    from asperity.case.sideways import CreepKeys, SidewaysKeys
+    from asperity.case.sideways import SidewaysKeys
     from asperity.radiation.pass_by import Passage
 
 MOST_STEPS = 10**8
@@ -44,7 +45,7 @@ SAMPLING = 2.5  # points per period of the highest frequency, at least
 
 SMOOTH = "hertz-filtered"
 """Main law of those where there is no sample of the surface."""
-OF_A_TRACK = ("noise", "sideways", "creep", "numerics.kernel", "numerics.poles")
+OF_A_TRACK = ("noise", "sideways", "numerics.kernel", "numerics.poles")
 """Sections and keys that mean nothing where no track is rolled over."""
 
 
@@ -111,12 +112,14 @@ class Case(AnyCase):
     surface: Surface = section(Surface, "what is rolled over: a measured map, or synthesised roughness")
     contact: ContactKeys = section(ContactKeys, "how the rough contact is solved and reduced", last=True)
     numerics: NumericsKeys = section(NumericsKeys, "how finely time, and a track, are resolved", last=True)
+    creep: CreepKeys = section(
+        CreepKeys, "how what rolls creeps, and, of wheels on a rail, whether they squeal", last=True
+    )
 
     if TYPE_CHECKING:  # where a track may be rolled over
         track: TrackKeys
         noise: NoiseKeys
         sideways: "SidewaysKeys"
-        creep: "CreepKeys"
 
     # --- what rolls over what
 
@@ -357,6 +360,7 @@ class Case(AnyCase):
         yield from self._problems_of_sampling()
         yield from self._problems_of_room()
         yield from self._problems_of_over()
+        yield from self._problem_of_spin()
         yield from self.own_problems()
 
     def own_problems(self) -> Iterator[InputError]:
@@ -476,6 +480,16 @@ class Case(AnyCase):
                     what = f"{title}.{given}"
                     allowed = f"what a {self.over_name} has"
                     yield InputError(what, "a key of a track", allowed, "Remove it.")
+
+    def _problem_of_spin(self) -> Iterator[InputError]:
+        """A spin that moves the rim of the smooth contact no faster than other creepages may."""
+        load = self.rolling.contact_load
+        semi_axes = self.smooth_contact.semi_axes(self.smooth_contact.approach(load))
+        spin = self.creep.spin or 0.0
+        most = MOST_CREEPAGE / max(semi_axes)
+        if abs(spin) > most:
+            allowed = f"at most {rounded(most)} rad/m, a creepage of {MOST_CREEPAGE:g} at the contact's rim"
+            yield InputError("creep.spin", f"{rounded(abs(spin))} rad/m", allowed)
 
     def _problem_of_place(self) -> Iterator[InputError]:
         """A contact on the rail head."""

@@ -72,6 +72,11 @@ class ContactKeys(form.Section):
         "damping of the contact",
         "1e-9 N s/m to 1e9 N s/m: less damps nothing, more is rigid",
     )
+    friction: float = key(
+        Number(above=0, at_most=1),
+        0.3,
+        "coefficient of friction, up to which a contact sticks: sideways, and where what rolls creeps",
+    )
     hardness: float | None = optional(
         Quantity("Pa", above=0),
         "3 GPa",

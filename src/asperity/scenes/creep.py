@@ -1,4 +1,4 @@
-"""Friction of a case under its working load and over states; how a wheel creeps on a rail, and squeals."""
+"""Friction of a case under its working load and over states; how what rolls creeps, and a wheel squeals."""
 
 import numpy as np
 
@@ -37,10 +37,8 @@ SOURCES = (
 
 
 def friction_of(case: Case) -> Friction:
-    """What a case says of friction, or a coefficient of 0.3 where it says nothing of creep."""
-    if "creep" not in case.inner:
-        return Friction(0.3)
-    return Friction(case.sideways.friction, case.creep.kinetic, case.creep.falling_velocity)
+    """What a case says of friction."""
+    return Friction(case.contact.friction, case.creep.kinetic, case.creep.falling_velocity)
 
 
 def smooth_with_friction(of: PreparedCase, friction: Friction) -> tuple[FrictionalHalfSpace, Contact]:
@@ -83,11 +81,11 @@ def states_of(prepared: PreparedCase, count: int, progress: Progress | None = No
 
 
 def creep_group(computed: compute.Computed) -> Values:
-    """Lay out friction under the working load and in time, and the stability of the wheel on the rail."""
+    """Lay out friction under the working load and in time, and of a wheel its stability on the rail."""
     case = computed.case
     shape = computed.shape
     speed = computed.case.speed
-    if "creep" not in case.inner or not any(case.creep.creepage):
+    if not any(case.creep.creepage):
         return {}
     creepage = case.creep.creepage
     rolling, smooth = smooth_with_friction(computed, friction_of(case))
@@ -104,13 +102,14 @@ def creep_group(computed: compute.Computed) -> Values:
     bodies = creep.CreepingBodies(rolling, shape.body, creepage, speed, max(float(force.max()), shape.load))
     followed, (stick, slip, *forces) = bodies.follow(force), np.transpose(rows)
     power = bodies.power(followed)
+    ways = schema.WAYS if "track" in computed.quantities else schema.WAYS_OFF_TRACK
     return {
-        schema.ROLLING_WAY: schema.WAYS,
+        schema.ROLLING_WAY: ways,
         schema.FRICTION_FORCE: np.moveaxis(followed[:2], 0, 2),
         schema.FRICTION_POWER: power,
         schema.FULL_SLIP_SHARE: np.mean((force > 0.0) & (force <= bodies.full_slip_load), axis=(1, 2)),
         schema.MEAN_FRICTION_POWER: power.mean(axis=(1, 2)),
-        schema.CREEP_WAY: schema.WAYS,
+        schema.CREEP_WAY: ways,
         schema.FRICTION_SAMPLE: np.arange(len(rows)),
         schema.STICK_AREA: np.maximum(stick, 0.0),
         schema.SLIP_AREA: slip,
@@ -135,9 +134,11 @@ def _facts(found: SlidingContact) -> Array:
 
 def _squeal(computed: compute.Computed, bodies: creep.CreepingBodies) -> Values:
     """Free motions of the wheel on the rail at mid-span, of a wheel whose axial modes are known."""
-    side, modes, (place, _) = Sideways(computed), computed.scene.modes, computed.case.contact_places
-    if modes is None or not modes.axial.any():
+    modes = computed.scene.modes
+    if "track" not in computed.quantities or modes is None or not modes.axial.any():
         return {}
+    side = Sideways(computed)
+    place, _ = computed.case.contact_places
 
     def receptances(omega: Complex) -> Complex:
         frequency = omega / (2.0 * np.pi)
@@ -170,6 +171,5 @@ OBSERVER = Observer(
     "creep",
     [each for each in declared(schema) if each.condition.startswith(schema.CREEPS)],
     creep_group,
-    needs=("track",),
     sources=SOURCES,
 )

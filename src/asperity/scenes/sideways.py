@@ -209,7 +209,7 @@ def sideways_group(computed: compute.Computed) -> Values:
         return {}
     case, band = computed.case, computed.band
     contacts = len(computed.scene.offsets)
-    limit = case.sideways.friction * computed.shape.load
+    limit = case.contact.friction * computed.shape.load
     step = found.lines[1] - found.lines[0]
 
     def levels(density: Array) -> Array:

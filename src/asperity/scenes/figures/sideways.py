@@ -1,4 +1,4 @@
-"""What moves sideways: lateral force, receptances and decay; friction of a wheel that creeps, and squeal."""
+"""What moves sideways: lateral force, receptances and decay; friction of what creeps, and squeal."""
 
 from collections.abc import Iterable, Iterator
 
@@ -123,7 +123,7 @@ def sideways_table(tree: DataTree) -> ReportTable:
     return table("sideways_table", "Sideways", columns, note)
 
 
-# --- how a wheel creeps on a rail: stick and slip, friction in time, and which of its modes squeal
+# --- how what rolls creeps: stick and slip, friction in time, and which of its modes squeal
 
 FRICTION = schema.FRICTION_FORCE
 HEAT = schema.FRICTION_POWER
@@ -156,18 +156,18 @@ def stick_and_slip(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
 
 
 @figure(
-    "Friction force on the wheel",
+    "Friction force on what rolls",
     Of(rolling.TIME),
     Of(FRICTION, "{way}, {law}", "{law}"),
     Of(HEAT, "heat, {law}", "{law}"),
     rows=force.around_peak,
 )
 def friction_force(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
-    """Friction force along and to the field side, and heat, around the largest force of the main law."""
+    """Friction force along and across, and heat, around the largest force of the main law."""
     time, unit = panels.time_axis(tree, lines.at)
     largest = max(float(np.abs(series.values).max()) for series in lines.of(FRICTION))
     size, symbol = data.force_unit(largest)
-    for way in schema.WAYS:  # but for what is nearly nothing
+    for way in data.words(tree, schema.ROLLING_WAY):  # but for what is nearly nothing
         found = lines.of(FRICTION, way=way)
         if any(np.abs(series.values).max() > 1e-3 * largest for series in found):
             drawn = panels.styled(tree, lines.at / unit, found, size=size)
@@ -213,6 +213,8 @@ def _named(tree: DataTree, motion: int) -> str:
 def creep_answers(tree: DataTree) -> headline.Answers | None:
     """Say whether a wheel that creeps squeals, in which modes and by what; n are nodal diameters."""
     if not data.present(tree, schema.STICK_AREA):
+        return None
+    if tuple(data.words(tree, schema.CREEP_WAY)) == schema.WAYS_OFF_TRACK:  # nothing squeals but on a rail
         return None
     if not data.present(tree, GROWTH):
         unknown = "Whether it squeals is not known, for want of the wheel's axial modes."
@@ -290,17 +292,18 @@ def friction_table(tree: DataTree) -> ReportTable:
     in_time = [data.of_law(tree, FRICTION, law) for law in laws]
     samples = [f"sample {n}" for n in range(1, len(stick))]
     none = np.full(len(laws), np.nan)
+    ways = data.words(tree, schema.CREEP_WAY)
     forces = np.vstack([data.values(tree, schema.SAMPLE_FRICTION), np.mean(in_time, axis=-1)]).T
     columns = {
         "contact": text_cells(["smooth", *samples, *(f"in time, {law}" for law in laws)]),
         "sticks / %": number_cells([*(100.0 * stick / (stick + slip)), *none], "{:.1f}"),
         "time in full slip / %": number_cells([*np.full_like(stick, np.nan), *(100.0 * full)], "{:.1f}"),
-        **{f"force {way}": number_cells(each, "N") for way, each in zip(schema.WAYS, forces, strict=True)},
+        **{f"force {way}": number_cells(each, "N") for way, each in zip(ways, forces, strict=True)},
         "spin moment": number_cells([*moment, *none], "N m"),
         "heat": number_cells([*heat, *mean_heat], "W"),
     }
     note = (
-        "Friction on the wheel: under the working load, and mean over time, forces at the first contact. "
+        "Friction on what rolls: under the working load, and mean over time, forces at the first contact. "
         "Heat is what drives the creepages, −V (F·ξ + M φ)."
     )
     return table("friction_table", "Friction", columns, note)
