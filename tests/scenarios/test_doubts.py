@@ -1,12 +1,15 @@
 """Sizes that are wrong by a thousand are doubted by the check; defaults and templates are not."""
 
 import re
+from pathlib import Path
 
 import pytest
 
 import small_cases
 from asperity.case import PRESETS
 from asperity.case.cases import as_case, demo_case, parse_case, template
+from asperity.cli import main
+from asperity.contact.batched import UNTRIED, processor
 from asperity.errors import OutOfRangeWarning, PhysicsWarning
 from asperity.running import prepare_case
 
@@ -19,6 +22,19 @@ def doubts(case):
     with PhysicsWarning.caught() as caught:
         ready = prepare_case(case)
     return [str(each.message) for each in (*caught, *ready.caught)]
+
+
+def test_a_device_on_which_nothing_was_ever_run_is_told(monkeypatch):
+    """In help, in what a check and a run doubt, and in the documentation."""
+    root = Path(__file__).parents[2]
+    monkeypatch.setattr("asperity.scenarios.doubts.find_device", processor)
+    assert [each for each in doubts(as_case(BALL)) if UNTRIED in each and "processor, numpy" in each]
+    for command in (main.commands[name] for name in ("check", "run", "study", "fit", "optimise")):
+        (help_of,) = [each.help for each in command.params if "--device" in each.opts]
+        assert UNTRIED in help_of
+    for page in ("docs/start/index.md", "docs/extend/decisions.md", "benchmarks/README.md"):
+        told = " ".join((root / page).read_text(encoding="utf-8").split()).lower()
+        assert UNTRIED in told, page
 
 
 @pytest.mark.parametrize(

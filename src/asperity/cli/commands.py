@@ -298,7 +298,8 @@ def _choose_device(context: click.Context, option: click.Parameter, name: str | 
 device = click.option(
     "--device",
     type=click.Choice(["cpu", "gpu"]),
-    help="Where contacts are solved; gpu needs CuPy. [default: $ASPERITY_DEVICE, else cpu]",
+    help="Where contacts are solved; gpu needs CuPy, and is written, not yet run on a device. "
+    "[default: $ASPERITY_DEVICE, else cpu]",
     callback=_choose_device,
     expose_value=False,
 )

@@ -18,6 +18,8 @@ DEVICES = ("cpu", "gpu")
 """What `device` may be."""
 CHOSEN = "ASPERITY_DEVICE"
 """The environment's choice, which the processes of a study inherit."""
+UNTRIED = "written, not yet run on a device"
+"""What is so of the device ``"gpu"``: only the arithmetic of its batches was tried, on the processor."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +73,8 @@ def gpu() -> Device:
 def find_device(name: str | None = None) -> Device | None:
     """Find the device for batches; None for ``"cpu"``, where contacts are solved one by one.
 
-    The name is ``"cpu"`` or ``"gpu"``; by default what ``$ASPERITY_DEVICE`` says, else ``"cpu"``.
+    The name is ``"cpu"`` or ``"gpu"``; by default what ``$ASPERITY_DEVICE`` says, else ``"cpu"``. What is
+    ``"gpu"`` was written and tried on the processor, not yet run on a device.
     """
     what = "device" if name is not None else f"${CHOSEN}"
     name = (os.environ.get(CHOSEN) or "cpu") if name is None else name

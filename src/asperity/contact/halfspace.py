@@ -329,7 +329,7 @@ class HalfSpace:
             ``progress(done, total, message)``.
         device : str, optional
             ``"cpu"``, or ``"gpu"`` to solve in batches through CuPy; by default what ``$ASPERITY_DEVICE``
-            says, else ``"cpu"``. Forces agree within the tolerance.
+            says, else ``"cpu"``. Forces agree within the tolerance; written, not yet run on a device.
         edges : Edges, optional
             Sharp edges of the surface: in cells that they cross, its heights are those of the sound surface.
 

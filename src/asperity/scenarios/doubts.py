@@ -4,6 +4,7 @@ import math
 
 from asperity.case.ball_bearing import STEPS_PER_PERIOD, BearingUnderLoad
 from asperity.case.scene import Case
+from asperity.contact.batched import UNTRIED, find_device
 from asperity.contact.hertz import Hertz
 from asperity.errors import OutOfRangeWarning
 from asperity.laws import spec_of
@@ -32,8 +33,16 @@ HEAVIEST = 1e5
 UNIT = "Is the unit right?"
 
 
+def doubt_device() -> None:
+    """Warn where contacts are to be solved on what the program was never run on."""
+    if (device := find_device()) is not None:
+        told = f"The device gpu ({device.name}) is {UNTRIED}: compare a small run with the device cpu first."
+        OutOfRangeWarning.warn(told)
+
+
 def doubt_sizes(case: Case, over: object) -> None:
     """Warn of sizes of a case that are hardly meant; `over` is what is rolled over."""
+    doubt_device()
     rolling = case.rolling
     name = case.ROLLING
     surface = case.surface
