@@ -53,6 +53,14 @@ class CreepKeys(Section):
         "1 mm/s to 100 m/s: nothing else is known",
         goes_with=_ANY,
     )
+    wear: float | None = optional(
+        Quantity("m^3/J", above=0),
+        "7e-4 mm^3/J",
+        "volume that friction takes from what is rolled over, over its work",
+        "nothing wears",
+        "1e-9 mm^3/J to 1 mm^3/J: materials lie between",
+        goes_with=_ANY,
+    )
 
     @property
     def creepage(self) -> tuple[float, float, float]:

@@ -123,8 +123,18 @@ def creep_group(computed: compute.Computed) -> Values:
         schema.CREEPAGE: creepage,
         schema.FULL_SLIP_SCALE: bodies.full_slip_scale(shape.load),
         schema.FULL_SLIP_LOAD: bodies.full_slip_load,
+        **_wear(computed, power),
         **_squeal(computed, bodies),
     }
+
+
+def _wear(computed: compute.Computed, power: Array) -> Values:
+    """What friction takes as all contacts pass once, by its power (laws, contacts, n), W; nothing unasked."""
+    case = computed.case
+    if case.creep.wear is None:
+        return {}
+    area = case.creep.wear * power.mean(axis=2).sum(axis=1) / case.speed
+    return {schema.WORN_AREA: area, schema.WEAR_DEPTH: area / (2.0 * computed.shape.semi_axes[1])}
 
 
 def _facts(found: SlidingContact) -> Array:

@@ -419,6 +419,10 @@ FRICTION_FORCE = _creeping("friction_force(law, contact, way, time)", "N", f"{_O
 FRICTION_POWER = _creeping("friction_power(law, contact, time)", "W", f"{_HEAT}, quasi-steady")
 FULL_SLIP_SHARE = _creeping("full_slip_share(law)", "1", "share of the time in full slip, of all contacts")
 MEAN_FRICTION_POWER = _creeping("mean_friction_power(law)", "W", f"{_HEAT}, mean over time and contacts")
+_WEARS = f"{CREEPS}, and wear"
+_worn = partial(_rolling, condition=_WEARS)
+WORN_AREA = _worn("worn_area(law)", "m2", "area of the section that one passage of all contacts takes, mean")
+WEAR_DEPTH = _worn("wear_depth(law)", "m", "the same over the width of the smooth contact: its mean depth")
 FRICTION_SAMPLE = _creep("sample", "1", "contact under the working load: 0 of smooth bodies, then samples")
 STICK_AREA, SLIP_AREA = (_creep(f"{w}_area(sample)", "m2", f"area that {w}s") for w in ("stick", "slip"))
 SAMPLE_FRICTION = _creep("friction_force(sample, way)", "N", _ON_ROLLING)
@@ -474,6 +478,7 @@ KEPT: dict[Entry, dict[str, str]] = {
     RADIATED_POWER_DEVIATION: {},
     FULL_SLIP_SHARE: {},
     MEAN_FRICTION_POWER: {},
+    WEAR_DEPTH: {},
 }
 """What a study keeps of it, where a result has it, and where of it."""
 TOTALS = (
@@ -492,6 +497,7 @@ SHOWN = (
     TRANSIT_EXPOSURE_LEVEL.name,
     FULL_SLIP_SHARE.name,
     MEAN_FRICTION_POWER.name,
+    WEAR_DEPTH.name,
     SQUEAL_GROWTH.name,
 )
 """What a study shows of it unasked."""

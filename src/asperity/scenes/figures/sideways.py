@@ -302,8 +302,12 @@ def friction_table(tree: DataTree) -> ReportTable:
         "spin moment": number_cells([*moment, *none], "N m"),
         "heat": number_cells([*heat, *mean_heat], "W"),
     }
+    if data.present(tree, schema.WEAR_DEPTH):
+        worn = [float(data.of_law(tree, schema.WEAR_DEPTH, law)) for law in laws]
+        columns["wear of a passage"] = number_cells([*np.full_like(stick, np.nan), *worn], "m")
     note = (
         "Friction on what rolls: under the working load, and mean over time, forces at the first contact. "
-        "Heat is what drives the creepages, −V (F·ξ + M φ)."
+        "Heat is what drives the creepages, −V (F·ξ + M φ). Wear is that of all contacts, as a mean depth "
+        "over the width of the smooth contact."
     )
     return table("friction_table", "Friction", columns, note)
