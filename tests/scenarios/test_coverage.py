@@ -80,6 +80,15 @@ def test_wavelengths_under_a_wrong_unit(scale, unit, tmp_path):
     np.testing.assert_allclose(read_levels(tmp_path / "a.csv")[0][0], 10.0**-0.5, rtol=1e-5)
 
 
+def test_waves_that_are_all_shorter_than_cells_are_told_with_their_unit(tmp_path):
+    """Millimetres under µm."""
+    rows = "".join(f"{wave * 1e3:.6g}, {level}\n" for wave, level in table(-0.5, 10))
+    (tmp_path / "a.csv").write_text(f"wavelength (um), level (dB)\n{rows}")
+    told = r"a.csv: received bands of waves of 39.8 µm to 0.316 mm .*; allowed: .*longer than .*Is the unit"
+    with pytest.raises(InputError, match=told):
+        prepare(case(tmp_path / "a.csv"), "case")
+
+
 def test_columns_of_a_table_that_count_are_told(tmp_path):
     levels = tmp_path / "a.csv"
     rows = "".join(f"{wave:.6g},{level},17\n" for wave, level in table(-0.5, 18))

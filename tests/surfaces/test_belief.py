@@ -96,6 +96,27 @@ def test_a_map_whose_lengths_are_all_a_thousand_times_too_large_is_told_both_rea
         read("mm", "2 mm")
 
 
+@pytest.mark.parametrize(("unit", "told"), [("mm", "thousand"), ("m", "million")])
+def test_a_line_whose_lengths_are_all_too_large_is_told_both_readings(tmp_path, unit, told):
+    """Micrometres under another unit: their slopes are right, and tell nothing."""
+    heights = np.convolve(np.random.default_rng(4).normal(size=300), np.ones(4) / 2.0, "same")
+    rows = "\n".join(f"{n};{z:.4f}" for n, z in enumerate(heights))
+    file = tmp_path / "a.csv"
+    file.write_text(f"x ({unit});z ({unit})\n{rows}\n")
+    message = rf"heights of [\d.]+ {unit} about .*, rougher than .* a {told} times too large, it is [\d.]+ µm"
+    with pytest.warns(OutOfRangeWarning, match=message + " about .* over 0.3 mm, points 1 µm apart"):
+        read_surface(file)
+
+
+def test_sections_of_bodies_and_long_waves_of_a_rail_are_no_rough_lines():
+    y = np.linspace(-60e-3, 60e-3, 481)
+    flange = 28e-3 * np.sin(np.clip((-38e-3 - y) / 14e-3, 0.0, 1.0) * np.pi / 2)
+    noise = 5e-6 * np.random.default_rng(0).normal(size=481)
+    waves = 5e-3 * np.sin(2 * np.pi * np.arange(3000) / 300.0)
+    for line in (Profile(flange - y / 20 + noise, 0.25e-3), Profile(waves, 0.1)):
+        judge_sizes(line, Hints())
+
+
 def test_form_is_no_roughness():
     """A cap of a ball of 5 mm, and a plate that is tilted by a degree."""
     x, y = np.meshgrid(*(4e-6 * np.arange(n) for n in (400, 300)), indexing="ij")

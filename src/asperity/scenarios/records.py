@@ -110,8 +110,17 @@ def _in_words(wavelength: Array, level_db: float, grid: Grid, name: str) -> str:
     """Say which bands a spacing holds."""
     held = wavelength[wavelength / HALF_BAND > SAMPLES * grid.spacing]
     if not held.size:
-        received = f"a length of {grid.length:.4g} m at {grid.spacing * 1e3:.4g} mm"
-        raise InputError(f"bands of {name}", received, "a length and a spacing that hold a band")
+        waves = (
+            f" of {told_length(wavelength.min())} to {told_length(wavelength.max())}"
+            if wavelength.size
+            else ""
+        )
+        least = told_length(SAMPLES * grid.spacing)
+        path = f"{told_length(grid.length)}, points {told_length(grid.spacing)} apart"
+        received = f"bands of waves{waves} for a path of {path}"
+        allowed = f"a band of waves longer than {least}"
+        remedy = "Is the unit of the wavelengths right? If it is, take a finer contact.spacing."
+        raise InputError(name, received, allowed, remedy)
     return f"{name}, bands of {nominal_length(held.max())} to {nominal_length(held.min())}, {level_db:+g} dB"
 
 

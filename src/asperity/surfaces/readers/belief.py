@@ -28,6 +28,11 @@ USUAL = 0.03
 ROUGHEST = 50e-6
 """Rms height of a map about a smooth form, m, beyond which nothing rolls: machined and worn surfaces have up
 to some 10 µm, castings 50 µm. Slopes tell no unit that is wrong for heights and places alike; this does."""
+JAGGED = 0.3
+"""Least typical bend from point to point, over the typical step, of a line that is rough: sections of bodies
+and long waves bend by less."""
+FIRST_POINTS = 2**14
+"""Points of a line by which that is told."""
 SMALLEST = 5e-6
 """Longest side of a map or line, m, below which microscopes of atomic force measure; nothing rolls. Slopes
 tell no unit that is wrong for heights and places alike; this does."""
@@ -100,7 +105,9 @@ def judge_sizes(surface: HeightMap | Profile, hints: Hints) -> None:
     if not USUAL_SLOPES[0] <= slope <= USUAL_SLOPES[1]:
         usual = f"up to {rounded(USUAL_SLOPES[1])}" if steep else f"from {rounded(USUAL_SLOPES[0])} on"
         OutOfRangeWarning.warn(f"{what}: {found}, usual are {usual}. {remedy}")
-    elif isinstance(surface, HeightMap) and 0.0 < field <= USUAL_FIELDS and not surface.holds_lines:
+    elif isinstance(surface, Profile):
+        _doubt_line(surface, what)
+    elif 0.0 < field <= USUAL_FIELDS and not surface.holds_lines:
         _doubt_roughness(surface, what)
 
 
@@ -117,6 +124,21 @@ def _doubt_roughness(surface: HeightMap, what: str) -> None:
     rough = _about_form(surface)
     if rough > ROUGHEST:
         OutOfRangeWarning.warn(f"{what}: {_two_readings(surface, rough)}")
+
+
+def _doubt_line(line: Profile, what: str) -> None:
+    """Warn of a line that is jagged, and rougher than what rolls; sections and long waves are smooth."""
+    steps = np.diff(line.heights[:FIRST_POINTS])
+    step, bend = (_typical(each[np.isfinite(each)]) for each in (steps, np.diff(steps)))
+    if bend > max(ROUGHEST, JAGGED * step):
+        some = line.heights[:: max(1, math.ceil(line.heights.size / FIRST_POINTS))]
+        beside = HeightMap(np.stack([some, some], axis=1), (line.spacing, line.spacing))
+        OutOfRangeWarning.warn(f"{what}: {_two_readings(line, _about_form(beside))}")
+
+
+def _typical(differences: Array) -> float:
+    """Typical size of differences: the rms of normal ones; 0 of none."""
+    return _NORMAL * float(np.median(np.abs(differences))) if differences.size else 0.0
 
 
 def _about_form(surface: HeightMap) -> float:
@@ -145,16 +167,20 @@ def larger_reading(surface: HeightMap | Profile) -> str:
     )
 
 
-def _two_readings(surface: HeightMap, rough: float) -> str:
-    """Say what a map is in the units that it is taken in, and in others of a thousandth."""
-    sides = [" × ".join(told_length(unit * side) for side in surface.size) for unit in (1.0, 1e-3)]
-    heights = [told_length(unit * rough) for unit in (1.0, 1e-3)]
-    now, less = (f"{z} about a smooth form over {xy}" for z, xy in zip(heights, sides, strict=True))
-    pixel = told_length(1e-3 * float(min(surface.spacing)))
+def _two_readings(surface: HeightMap | Profile, rough: float) -> str:
+    """Say what a surface is in the units that it is taken in, and in others a thousandth or less of them."""
+    times, smaller = ("thousand", 1e-3) if rough <= ROUGHEST * 1e3 else ("million", 1e-6)
+    sides = np.atleast_1d(surface.size)
+    now, less = (
+        f"{told_length(unit * rough)} about a smooth form over "
+        f"{' × '.join(told_length(unit * side) for side in sides)}"
+        for unit in (1.0, smaller)
+    )
+    pixel = told_length(smaller * float(np.min(surface.spacing)))
     given = f"{spell('height_unit')} and {spell('pixel')}"
     return (
         f"heights of {now}, rougher than what rolls (castings have {told_length(ROUGHEST)}). If all of "
-        f"its lengths are a thousand times too large, it is {less}, points {pixel} apart: then correct both "
+        f"its lengths are a {times} times too large, it is {less}, points {pixel} apart: then correct both "
         f"units, {given}."
     )
 
