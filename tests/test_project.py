@@ -43,7 +43,7 @@ def test_recipe_and_archive_say_what_the_project_says():
     assert json.loads(text(".zenodo.json"))["title"] == yaml.safe_load(text("CITATION.cff"))["title"]
     left = [
         name
-        for name in ("SECURITY.md", "CODE_OF_CONDUCT.md", ".zenodo.json", "CITATION.cff")
+        for name in ("SECURITY.md", "CODE_OF_CONDUCT.md", ".zenodo.json", "CITATION.cff", "paper/paper.md")
         if PERSON in text(name)
     ]
     assert all(name in text("CONTRIBUTING.md") for name in (*left, "packaging/README.md"))
@@ -283,6 +283,20 @@ def test_an_example_is_short_and_asserts_what_it_says(example):
     stripped = (line.strip() for line in contents.splitlines()[after:])
     assert sum(bool(line) and not line.startswith("#") for line in stripped) <= 60
     assert sum(isinstance(node, ast.Assert) for node in tree.body) >= 2
+
+
+def test_the_paper_has_the_sections_and_the_length_that_its_journal_asks_for():
+    """Journal of Open Source Software, from 2026 on; what only a person can say is marked."""
+    sections = ["Summary", "Statement of need", "State of the field", "Software design"]
+    sections += ["Research impact statement", "AI usage disclosure", "Acknowledgements", "References"]
+    assert re.findall(r"^# (.*)$", PAPER, re.MULTILINE) == sections
+    assert 750 <= len(PAPER.split()) <= 1750
+    entries = text("paper/paper.bib").split("\n@")[1:]
+    seen = [re.search(r"^  doi = \{(10\.\d+/\S+)\},$", each, re.MULTILINE) for each in entries]
+    unseen = {each.split("{")[1].split(",")[0] for each, doi in zip(entries, seen, strict=True) if not doi}
+    marked = {"Remington1987", "Thompson2009", "Vollebregt2014", "Lundberg2014B"}
+    assert unseen == marked | {"Lundberg2014", "Lundberg2014A", "CNOSSOS"}
+    assert all(each in text("paper/paper.bib").split("@")[0] for each in marked)
 
 
 def test_the_paper_cites_its_list_and_its_script_draws_its_figures():
