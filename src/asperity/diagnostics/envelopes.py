@@ -45,11 +45,31 @@ def amplitude_spectrum(signal: ArrayLike, rate: float) -> Spectrum:
     from scipy.fft import next_fast_len, rfft
 
     values, rate = checked_signal(signal, rate)
-    window = 0.5 - 0.5 * np.cos(2.0 * np.pi * (np.arange(values.size) + 0.5) / values.size)
     size = next_fast_len(2 * values.size, real=True)
-    amplitude = 2.0 * np.abs(rfft(values * window, size)) / window.sum()
-    frequency = np.arange(amplitude.size) * (rate / size)
+    window = _window(values.size)
+    weight = window.sum()
+    window *= values  # in place, here and below: records may be as long as memory allows
+    del values
+    lines = rfft(window, size)
+    del window
+    amplitude = np.abs(lines)
+    del lines
+    amplitude *= 2.0
+    amplitude /= weight
+    frequency = np.arange(float(amplitude.size)) * (rate / size)
     return frequency, np.asarray(amplitude, dtype=np.float64)
+
+
+def _window(size: int) -> Array:
+    """Hann window of so many points, half a step beside its ends."""
+    window = np.arange(size, dtype=np.float64)
+    window += 0.5
+    window *= 2.0 * np.pi
+    window /= size
+    np.cos(window, out=window)
+    window *= -0.5
+    window += 0.5
+    return window
 
 
 def mean_spectrum(signals: Iterable[tuple[Array, float]], rate: float) -> tuple[Spectrum, float]:
@@ -77,9 +97,14 @@ def mean_spectrum(signals: Iterable[tuple[Array, float]], rate: float) -> tuple[
     for signal, level in signals:
         levels.append(level)
         frequency, amplitude = amplitude_spectrum(signal, rate)
-        power = power + (amplitude * (levels[0] / level)) ** 2
+        amplitude *= levels[0] / level
+        amplitude *= amplitude
+        power = amplitude + power
     mean = float(np.mean(levels))
-    return (frequency, np.sqrt(power / len(levels)) * (mean / levels[0])), mean
+    power /= len(levels)
+    np.sqrt(power, out=power)
+    power *= mean / levels[0]
+    return (frequency, power), mean
 
 
 def envelope_spectrum(signal: ArrayLike, rate: float, band: tuple[float, float] | None = None) -> Spectrum:
@@ -129,8 +154,9 @@ def analytic_signal(values: Array, rate: float, low: float, high: float) -> Arra
     lines = np.zeros(values.size, dtype=np.complex128)
     below_half = (values.size + 1) // 2
     frequency = np.arange(below_half) * (rate / values.size)
-    held = (frequency >= low) & (frequency <= high)
-    lines[:below_half][held] = 2.0 * rfft(values)[:below_half][held]
+    first, last = np.searchsorted(frequency, low), np.searchsorted(frequency, high, side="right")
+    del frequency
+    np.multiply(rfft(values)[first:last], 2.0, out=lines[first:last])
     return np.asarray(ifft(lines, overwrite_x=True))
 
 
@@ -169,8 +195,13 @@ def prewhitened(signal: ArrayLike, rate: float) -> Array:
     values, _ = checked_signal(signal, rate)
     lines = rfft(values)
     size = np.abs(lines)
-    white = irfft(lines / np.maximum(size, FLOOR * size.max()), values.size)
-    return np.asarray(white * np.sqrt(values.size))
+    np.maximum(size, FLOOR * size.max(), out=size)
+    lines /= size
+    count = values.size
+    del values, size
+    white = irfft(lines, count, overwrite_x=True)
+    white *= np.sqrt(count)
+    return np.asarray(white)
 
 
 def band_velocities(
