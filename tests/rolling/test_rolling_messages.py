@@ -14,7 +14,8 @@ from asperity.laws import HertzLaw, Linear
 from asperity.reduction.texture import StateTexture
 from asperity.rolling.assembly import at_rest
 from asperity.rolling.ground import Path, ground_of
-from asperity.rolling.roll import free_motion, refuse_missed_load, roll_bodies
+from asperity.rolling.roll import roll_bodies
+from asperity.rolling.soundness import free_motion, refuse_missed_load
 from asperity.structures.body import Body
 from asperity.structures.moving_kernel import MovingKernel
 from asperity.structures.rail_poles import RailBetween

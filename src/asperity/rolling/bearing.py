@@ -11,8 +11,9 @@ from asperity.arguments import Array, ArrayLike, finite_array, positive, require
 from asperity.laws.linear import Linear
 from asperity.laws.spec import Law
 from asperity.progress import Progress
+from asperity.rolling.ledger import Ledger
 from asperity.rolling.mechanism import Along, Edge, Mechanism, Side, rest_of, roll_mechanism
-from asperity.rolling.roll import STILL, Ledger, steady
+from asperity.rolling.soundness import STILL, steady
 from asperity.store import Checkpoint
 from asperity.structures.ball_bearing import BallBearing
 from asperity.structures.body import Body

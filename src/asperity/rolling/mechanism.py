@@ -15,9 +15,11 @@ from asperity.kernels.pointforce import TABLE, Prepared, evaluate_all
 from asperity.kernels.stepping import Motion, System
 from asperity.laws.spec import Law, SteppedLaw, settles
 from asperity.progress import Progress
-from asperity.rolling import assembly, roll, steps
+from asperity.rolling import assembly, steps
 from asperity.rolling.ground import Ground, no_channels
+from asperity.rolling.ledger import Ledger, ledger_of
 from asperity.rolling.resolution import PER_MODE
+from asperity.rolling.soundness import warn_of_counts
 from asperity.rolling.stepper import Stepper, sizes_of, stacked
 from asperity.store import Checkpoint
 from asperity.structures.body import Body
@@ -196,7 +198,7 @@ class RolledMechanism:
     acceleration: Array  # (sensors, t), m/s²
     reached: Array  # (n, 2), least and largest contact force in run-in and run, N
     softening: Array  # (n,), compliance that the time step puts in series with the contacts, m/N
-    energy: roll.Ledger  # where the work of the loads went, in run-in and run
+    energy: Ledger  # where the work of the loads went, in run-in and run
     unconverged_steps: int
 
 
@@ -272,7 +274,7 @@ def roll_mechanism(
         record.acceleration[:, kept],
         np.column_stack([record.contact_force.min(axis=1), record.contact_force.max(axis=1)]),
         stepper.system.softening,
-        roll.ledger_of(stepper, energies),
+        ledger_of(stepper, energies),
         int(stepper.motion.counts[1]),
     )
 
@@ -354,4 +356,4 @@ def _warn(stepper: Stepper, course: _OnEdges) -> None:
             stop = min(first + CHECKED, course.total + 1)
             law = _laid(course.mechanism.edges[k], first, stop)
             beyond[k] += evaluate_all(law, np.ascontiguousarray(seen[k, first:stop]), 0)[2]
-    roll.warn_of_counts([law.name for law in stepper.laws], counts, beyond.tolist(), seen.shape[1])
+    warn_of_counts([law.name for law in stepper.laws], counts, beyond.tolist(), seen.shape[1])

@@ -14,45 +14,17 @@ import numpy as np
 
 from asperity import errors
 from asperity.arguments import Array, ArrayLike, NDArray
-from asperity.kernels import pointforce, stepping
+from asperity.kernels import pointforce
 from asperity.laws.spec import Law, SteppedLaw
 from asperity.progress import Progress
-from asperity.rolling import assembly, ground, steps
+from asperity.rolling import assembly, ground
+from asperity.rolling.ledger import Ledger, ledger_of
+from asperity.rolling.soundness import STILL, free_motion, refuse_missed_load, steady, warn_of_counts
 from asperity.rolling.stepper import OnPaths, Stepper
 from asperity.store import Checkpoint
 from asperity.structures.body import Body
 from asperity.structures.modal import Modal
 from asperity.structures.rail_poles import RailBetween
-from asperity.written_numbers import engineering, rounded
-
-
-@dataclass(frozen=True)
-class Ledger:
-    """Energies gained and work done since the start, J, in run-in and run.
-
-    The work of the loads, the constant forces that press the bodies down, equals the sum of kinetic and
-    elastic energy gained by bodies and structure, of what their damping dissipated, of the work on the
-    contacts (stored, damped, less what textures feed in), and of that against the slope of the bent
-    structure, given up to the drive that keeps the speed; up to what the time step leaves open: the integrals
-    are taken by the trapezoidal rule from the motion, the energies from the states at start and end. On a
-    rail, of which displacements alone are known, the contacts hold what goes into contacts and rail together,
-    and the terms of the structure are zero.
-    """
-
-    shares: dict[str, float]  # by their names in results; the first equals the sum of the others
-    contact_damping: float  # what the dampers of the contacts took of their share
-    throughput: float  # time integral of the moduli of the powers at both sides of all contacts
-
-    @property
-    def of_nothing(self) -> Ledger:
-        """The same where nothing was gained or done."""
-        return Ledger(dict.fromkeys(self.shares, 0.0), 0.0, 0.0)
-
-    @property
-    def residual(self) -> float:
-        """What the balance leaves open, relative to the throughput."""
-        loads, *others = self.shares.values()
-        return abs(loads - sum(others)) / self.throughput if self.throughput > 0.0 else 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -245,36 +217,6 @@ def _refuse_missed_loads(stepper: Stepper, path: ground.Path, apart: NDArray[np.
             refuse_missed_load(name, force, load, mass, reach, path.time_step, path.settled)
 
 
-def ledger_of(stepper: Stepper, before: tuple[float, float, float]) -> Ledger:
-    """Balance of a run that started with these energies of structure, of bodies and of their loads, J."""
-    structure, bodies, loads = (now - then for now, then in zip(stepper.energies(), before, strict=True))
-    ledger = stepper.motion.ledger.tolist()
-    shares = {
-        "work of the loads": -loads,
-        "bodies": bodies,
-        "damping of the bodies": ledger[stepping.BODY_DAMPING] + _missed_of_dampers(stepper),
-        "structure": structure,
-        "damping of the structure": ledger[stepping.OVER_DAMPING],
-        "contacts": ledger[stepping.CONTACT_WORK],
-        "slope of the structure": ledger[stepping.SLOPE_WORK],
-    }
-    return Ledger(shares, ledger[stepping.CONTACT_DAMPING], ledger[stepping.THROUGHPUT])
-
-
-def _missed_of_dampers(stepper: Stepper) -> float:
-    """Energy, J, that stiff dampers of bodies took beyond what the ledger has of them."""
-    h = stepper.course.time_step
-    of = stepper.system.body
-    record = stepper.record
-    missed = 0.0
-    for k, (body, core, rates) in enumerate(zip(stepper.bodies, record.core, stepper.started, strict=True)):
-        if steps.stiff_dampers(body, h):
-            count = len(body.mass)
-            force = record.contact_force[of == k]
-            missed += steps.missed_by_powers(body, h, core[:count], rates[:count], force)
-    return missed
-
-
 def flying(prepared: pointforce.Prepared | SteppedLaw, force: Array, approach: Array) -> NDArray[np.bool_]:
     """Whether the bodies are apart at each step, by force, N, and approach, m, (n,) each.
 
@@ -288,18 +230,9 @@ def flying(prepared: pointforce.Prepared | SteppedLaw, force: Array, approach: A
     return np.asarray(force <= 0.0)
 
 
-STILL = 1e-9
-"""Share of forces and displacements by which they vary where nothing vibrates: each is found to 1e-10."""
-
-
 def _varies(record: Array) -> bool:
     """Whether any row of a record (..., n) varies by more than rounding."""
     return bool((np.ptp(record, axis=-1) > STILL * np.abs(record).max(axis=-1)).any())
-
-
-def steady(record: Array) -> Array:
-    """A record (..., n) that keeps its last values throughout."""
-    return np.repeat(record[..., -1:], record.shape[-1], axis=-1)
 
 
 def without_rounding(run: RolledBodies) -> RolledBodies:
@@ -316,96 +249,3 @@ def without_rounding(run: RolledBodies) -> RolledBodies:
         acceleration=np.zeros_like(run.acceleration),
         energy=energy,
     )
-
-
-LEAST = 100
-"""Time steps of which anything is said."""
-ERRORS = 5.0
-"""Standard errors that a mean force may miss the load by."""
-FAR = 10.0
-"""How far, in what bodies and texture allow, a mass that misses its load has to be driven away."""
-
-
-def free_motion(body: Body) -> tuple[Array, float, float] | None:
-    """How a body that nothing but its contacts holds is driven by its load; None if springs hold it.
-
-    Displacements of its contacts (c,), the largest one; its mass in this motion, kg, and its load, N.
-    """
-    held = np.vstack([each / (np.abs(each).max() or 1.0) for each in (body.stiffness, body.damping)])
-    _, size, rows = np.linalg.svd(held, full_matrices=False)
-    loose = rows[size < 1e-9]
-    motion = loose.T @ (loose @ body.pressing)
-    at_contacts = body.contacts @ motion
-    largest = float(np.abs(at_contacts).max(initial=0.0))
-    if not largest > 1e-9 * float(np.linalg.norm(body.pressing)):
-        return None
-    motion = motion / largest
-    return at_contacts / largest, float(motion @ body.mass @ motion), float(motion @ body.pressing)
-
-
-def refuse_missed_load(
-    name: str, force: Array, load: float, mass: float, reach: float, time_step: float, settled: int = 0
-) -> None:
-    """Refuse a run whose mean contact force misses the load by more than its standard error.
-
-    Force (n,) of run-in and run, and load, N, on a mass, kg, that nothing else holds; `reach` is how far
-    deflection and texture displace it, m. The mean of F − P over a time T is the change of momentum over T,
-    exactly. Where motion is bounded, that is the difference of two moments, so that √2 σ/T is its standard
-    error, σ being the standard deviation of the momentum about its trend; a mass that falls has no other
-    trend. Within a part of a slow swing it looks alike, but then the mass stays within reach. A mean of more
-    than twice the load is more than rest and gravity account for. A record, from step `settled` on, in which
-    nothing touches says nothing, however short it is.
-    """
-    if not force[settled:].any():
-        raise errors.ComputationError(
-            f"{name}: nothing touches in all of the record: the contact force is 0 N, the load "
-            f"{rounded(load, 4)} N",
-            "a longer record, and look for what throws the bodies apart, as springs that are too soft",
-        )
-    driven = 0.5 * (force[1:] + force[:-1]) - load  # over each step
-    if driven.size < LEAST:
-        return
-    missed = float(driven.mean())
-    time = driven.size * time_step
-    if abs(missed) <= STILL * load:
-        return
-    error = np.sqrt(2.0) * float(np.std(np.cumsum(driven - missed))) / driven.size
-    away = 0.5 * abs(missed) / mass * time**2
-    if away > FAR * reach and (abs(missed) > ERRORS * error or missed > load):
-        raise errors.ComputationError(
-            f"{name}: the mean contact force of {rounded(load + missed, 4)} N misses the load of "
-            f"{rounded(load, 4)} N by more than bounded motion can, whose standard error is "
-            f"{rounded(error, 2)} N: in {rounded(time)} s that drives what rolls {engineering(away, 'm', 2)} "
-            "away",
-            "what a warning asks for, if there is one; else look for what gives off energy or is not held: "
-            'masses, springs and damping; for a track also numerics.kernel = "scatter"',
-        )
-
-
-def warn_of_counts(
-    names: Sequence[str], counts: NDArray[np.int64], beyond: Sequence[int], recorded: int
-) -> None:
-    """Warn of steps that missed the tolerance, and of steps at which a law was beyond its data.
-
-    Of laws by their names: steps done and not converged, and steps beyond, of so many recorded.
-    """
-    if counts[1]:
-        share = float(counts[1]) / max(int(counts[0]), 1)
-        errors.UnconvergedWarning.warn(
-            f"{', '.join(dict.fromkeys(names))}: {counts[1]} of {max(int(counts[0]), 1)} time steps "
-            f"({errors.percent(share)}) missed the tolerance on the contact force: their force is uncertain; "
-            "take a smaller numerics.time_step",
-            errors.Grade.of_share(share),
-        )
-    of_law = dict.fromkeys(names, 0)
-    for name, count in zip(names, beyond, strict=True):
-        of_law[name] += int(count)
-    for name, count in of_law.items():
-        steps = names.count(name) * recorded
-        if count:
-            errors.ExtrapolationWarning.warn(
-                f"{name}: the contact was closer than its largest computed state in {count} of {steps} time "
-                f"steps ({errors.percent(count / steps)}): the force there is a continuation; let "
-                "contact.approaches reach higher",
-                errors.Grade.of_share(count / steps),
-            )
