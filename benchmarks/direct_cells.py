@@ -7,17 +7,22 @@ count as far as they are covered; the reference are 24 covered ones. With ``--ta
 
     python benchmarks/direct_cells.py --textures 4
     python benchmarks/direct_cells.py --textures 4 --table
+    python benchmarks/direct_cells.py --templates ball-on-beam wheel-on-rail
+
+With ``--templates`` the cases that `asperity new` writes, on their grids against covered cells half as large,
+over the same surface: errors of laws, and processor time.
 """
 
 import argparse
 import os
 import tempfile
+import time
 from unittest.mock import patch
 
 import numpy as np
 
-from asperity.case.cases import parse_case
-from asperity.running import prepare_case
+from asperity.case.cases import parse_case, template
+from asperity.running import prepare_case, run
 from asperity.scenes.compute import compute
 from asperity.spectra import band_levels, psd
 
@@ -96,9 +101,47 @@ def table_beside(textures: int) -> None:
             print(f"| {seed} | {across} | " + " | ".join(rms(b - a) for a, b in pairs) + " |", flush=True)
 
 
+TEMPLATES = {
+    "ball-on-beam": {"laws": ("areal", "table", "direct"), "duration": 0.04},
+    "wheel-on-rail": {"laws": ("areal", "linear-filtered", "table"), "duration": 0.15},
+}
+"""What is changed of templates: laws, and how long the record is, s."""
+
+
+def of_templates(kinds: list[str]) -> None:
+    """Print what each kind of cells makes of the cases that users begin with."""
+    print("| case | cells | law | dB rms | most | processor time of all laws, s |\n|---|---|---|---|---|---|")
+    for kind in kinds:
+        base = parse_case(template(kind)).with_(**TEMPLATES[kind])
+        chosen = prepare_case(base).case
+        same = {"contact.window": chosen.contact.window, "numerics.time_step": chosen.time_step}
+        if chosen.surface.rms is not None:
+            waves = {f"surface.{name}": getattr(chosen.surface, name) for name in ("shortest", "longest")}
+            same |= waves | {"contact.samples": 4}
+        found, seconds = {}, {}
+        for name, cells, finer in (("fine", "covered", 2), ("whole", "whole", 1), ("covered", "covered", 1)):
+            grid = {"contact.spacing": chosen.contact.spacing / finer, "contact.rim_cells": cells}
+            with tempfile.TemporaryDirectory() as folder, patch.dict(os.environ, ASPERITY_CACHE=folder):
+                begun = time.process_time()
+                tree = run(base.with_(**same, **grid))
+                seconds[name] = time.process_time() - begun
+            found[name] = tree["spectra/force_level"]
+        for name in ("whole", "covered"):
+            off = found[name] - found["fine"]
+            for law in off["law"].values.tolist():
+                each = off.sel(law=law).values
+                most = np.nanmax(np.abs(each))
+                row = f"| {kind} | {name} | {law} | {np.sqrt(np.nanmean(each**2)):.3f} | {most:.2f} "
+                print(row + f"| {seconds[name]:.1f} |", flush=True)
+
+
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--textures", type=int, default=4)
     parser.add_argument("--table", action="store_true", help="`table` beside `direct`")
+    parser.add_argument("--templates", nargs="+", choices=TEMPLATES, help="cases that users begin with")
     chosen = parser.parse_args()
+    if chosen.templates:
+        of_templates(chosen.templates)
+        raise SystemExit
     (table_beside if chosen.table else against_fine)(chosen.textures)
