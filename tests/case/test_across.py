@@ -251,6 +251,24 @@ def test_printed_sections_each_way_up_have_one_contact_that_the_chosen_window_ho
     assert 2.2 * max(shape.semi_axes) < case.contact.window
 
 
+def test_printed_sections_along_their_arc_touch_as_those_at_even_places(tmp_path):
+    """As instruments that follow the surface have them, 0.2 mm of it from point to point."""
+    files = []
+    for name, shape, places in (("w", printed_sections.s1002, Y), ("r", printed_sections.head_60e1, ACROSS)):
+        y = np.arange(places[0], places[-1], 0.01)
+        along = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(y), np.diff(shape(y))))])
+        some = np.interp(np.arange(0.0, along[-1], 0.2), along, y)
+        files.append(tmp_path / f"{name}.csv")
+        files[-1].write_text(
+            "y (mm);z (mm)\n" + "\n".join(f"{a:.4f};{b:.5f}" for a, b in zip(some, shape(some), strict=True))
+        )
+    found, even = chosen(*files), chosen(wheel_of(), rail_of())
+    assert across.meeting_of(found).places == pytest.approx(across.meeting_of(even).places, abs=5e-5)
+    with PhysicsWarning.ignored():
+        shapes = [geometry_of(case).semi_axes for case in (found, even)]
+    assert shapes[0] == pytest.approx(shapes[1], rel=5e-3)
+
+
 @pytest.mark.parametrize(("wheel", "message"), [
     ({"by": 2.0}, r"a flange 56 mm high; allowed: .* to 42 mm. Are its heights diameters.* Halve"),
     ({"by": -2.0}, "a flange 56 mm high"),

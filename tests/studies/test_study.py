@@ -98,6 +98,8 @@ def test_failed_members_leave_gaps_are_grouped_and_tried_again(failing):
     assert calls[-1] == (6, 6, "study of 6 members")
     with pytest.raises(ComputationError, match=r"the only member failed, the first one so: at 1\.0 m/s it"):
         computed({"seed": [2]})
+    with pytest.raises(ComputationError, match=r"all 2 members failed, the first one so: at 1\.0 m/s it"):
+        computed({"seed": [2], "start": ["0.99 m", "0 m"]})  # one that cannot be a case is no reason
 
 
 def test_values_that_do_not_fit_together_fail_alone():

@@ -233,7 +233,8 @@ def study(
     with shown_progress(progress) as told:
         results, failures = _outcomes(members, compute, told, signals)
     if not results:
-        first = next(iter(failures.values()))
+        computed = (failures[member.index] for member in members if member.case is not None)
+        first = next(computed, next(iter(failures.values())))  # what has no case is left out, and no failure
         all_of_them = "the only member" if len(members) == 1 else f"all {len(members)} members"
         what = f"{all_of_them} failed, the first one so: {first.message.rstrip('.')}"
         raise ComputationError(what, "one of them with 'asperity run'")

@@ -11,7 +11,7 @@ from asperity import extensions
 from asperity.arguments import require, shown, whole
 from asperity.errors import InputError, MissingPointsWarning, percent
 from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.surfaces.readers import arrays, guards, iso_25178, matlab, text
+from asperity.surfaces.readers import arrays, guards, iso_25178, matlab, simpack, text
 from asperity.surfaces.readers.belief import doubt_depth, judge_sizes
 from asperity.surfaces.readers.formats import SurfaceFormat
 from asperity.surfaces.readers.headings import is_depth
@@ -33,6 +33,8 @@ OWN: dict[str, tuple[str, Reader]] = {
     ".mat": ("MATLAB", matlab.read_mat),
     ".sdf": ("SDF", iso_25178.read_sdf),
     ".x3p": ("X3P", iso_25178.read_x3p),
+    ".prw": ("Simpack profile", simpack.read),
+    ".prr": ("Simpack profile", simpack.read),
 }
 TEXT: tuple[str, Reader] = "text", text.read
 OTHER: tuple[str, Reader] = "known instrument", read_apart("read_instrument", "known instrument")
@@ -148,6 +150,16 @@ def read_all(
     return _finished(surfaces, transpose, fill, spikes, lines)
 
 
+def read_section(path: str | Path) -> guards.Surface:
+    """Read the section of a body across its path, a line whose places need not be even.
+
+    Uneven ones are interpolated, see `positions.made_even`. All else is as `read_surface` reads it.
+    """
+    surfaces = _read(path, Hints(section=True))
+    require(len(surfaces) == 1, str(path), f"an ensemble of {len(surfaces)} samples", "one line")
+    return _finished(surfaces, False, False, False, None)[0]
+
+
 def _chosen(surfaces: list[guards.Surface], index: int | None, path: str | Path) -> list[guards.Surface]:
     """The sample of an index, or all where there is none."""
     what = f"index of a sample in {path}"
@@ -208,6 +220,8 @@ def _by_content(file: Path, head: bytes) -> str | None:
         return ".mat"
     if head.startswith((b"\x89HDF", *CLASSIC)) and extension in ("", ".nc", ".nc4", ".cdf", ".dat"):
         return ".nc"
+    if extension in (".prw", ".prr") and simpack.holds_profile(file):
+        return extension
     if not head.startswith(b"PK"):
         return None
     received, allowed = "a zip archive without its directory", "an intact archive"

@@ -4,7 +4,7 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -91,6 +91,7 @@ class Hints:
     pixel: tuple[float, float] | None = None  # (dx, dy), m
     pixel_unit: float | None = None  # length in m of one unit of the coordinates
     decimal: str | None = None  # mark of a text file
+    section: bool = False  # whether it is that of a body, whose places may be uneven
 
     def heights_in(self, source: str, stated: float | None = None) -> float:
         """Return the factor of the heights: the hint, else what the file states, else an `InputError`."""
@@ -116,7 +117,8 @@ class Hints:
 
     def refuse(self, source: str, kind: str) -> None:
         """Raise an `InputError` if anything was said about a format that states everything itself."""
-        said = [spell(name) for name, value in asdict(self).items() if value is not None]
+        given = asdict(replace(self, section=False)).items()
+        said = [spell(name) for name, value in given if value not in (None, False)]
         allowed = f"no hints, because {kind} files state their lengths and have one array"
         require(not said, f"hints for {source}", ", ".join(said), allowed, "Leave them out.")
 

@@ -4,9 +4,11 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
+import scipy
 
 from asperity.arguments import Array, NDArray, require
-from asperity.written_numbers import count_of
+from asperity.errors import InputError
+from asperity.written_numbers import count_of, rounded
 
 TOLERANCE = 0.05
 """Largest distance of a point from the grid, in spacings, unless its coordinate was printed more coarsely."""
@@ -24,6 +26,10 @@ SURE = 0.75
 """Largest share of a spacing that counts there: beyond it, only that points stand in order tells."""
 BISECTIONS = 40
 """Of a slope, each of which halves what is not known of it."""
+WIDEST_GAP = 0.1
+"""Largest share of a section without a point."""
+MOST_TIMES = 8
+"""Places of a section that was made even, over its points, at most."""
 JITTER = 4.0
 """Least ratio of distances between the lines of a grid to those of coordinates within one of them."""
 Index = NDArray[np.intp]
@@ -38,6 +44,32 @@ def line(x: Array, z: Array, source: str) -> tuple[Array, float]:
     """
     index, spacing = places(x, f"x of {source}")
     return _gridded(index, z, (int(index.max()) + 1,), source), spacing
+
+
+def made_even(x: Array, z: Array, source: str) -> tuple[Array, float]:
+    """Put points of a section on a uniform line as `line` does, or interpolate them where they are on none.
+
+    Between uneven points it is a spline that overshoots none of them (Akima 1970), at the median of their
+    distances. Refused are two heights at one place, and gaps wider than any that a spline may fill.
+    """
+    try:
+        return line(x, z, source)
+    except InputError as error:
+        if error.received != UNEVEN:
+            raise
+    order = np.argsort(x, kind="stable")
+    place, height = x[order], z[order]
+    gaps = np.diff(place)
+    received = f"several heights at {rounded(place[int(np.argmin(gaps))])}"
+    remedy = "Leave flanks out that overhang."
+    require(gaps.min() > 0.0, f"x of {source}", received, "one height at each place", remedy)
+    extent = place[-1] - place[0]
+    widest = f"a gap of {rounded(gaps.max() / extent)} of the line without a point"
+    require(gaps.max() <= WIDEST_GAP * extent, f"x of {source}", widest, f"at most {WIDEST_GAP}", RESAMPLE)
+    count = 1 + min(math.ceil(extent / np.median(gaps)), MOST_TIMES * len(x))
+    even = np.linspace(place[0], place[-1], count)
+    heights = scipy.interpolate.Akima1DInterpolator(place, height)(even)
+    return np.asarray(heights), float(extent / (count - 1))
 
 
 def rasterised(x: Array, y: Array, z: Array, source: str) -> tuple[Array, tuple[float, float]]:

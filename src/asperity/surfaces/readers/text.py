@@ -343,7 +343,8 @@ def _surfaces(table: Array, header: dict[str, float], hints: Hints, source: str)
                 unit = lateral(axis)
                 return [Profile(line, step * unit, source, float(table[:, place].min()) * unit)]
     if columns == 2:
-        line, step = positions.line(table[:, 0], heights, source)
+        put = positions.made_even if hints.section else positions.line
+        line, step = put(table[:, 0], heights, source)
         if spacing:
             return [Profile(line, spacing[0], source)]
         unit = lateral("x")
