@@ -158,3 +158,13 @@ def test_a_steady_load_makes_no_sound_when_steps_end_on_sleepers():
         frequency = np.fft.rfftfreq(6000, step)
         high = (frequency > 2000.0) & (frequency < 5000.0)
         assert spectrum[:, high].sum() < 1e-6 * spectrum.sum()
+
+
+def test_a_bay_may_hold_a_step_more_by_rounding(monkeypatch):
+    """Of bays of 400 steps some have 401: transforms that are no longer than they must be hold them."""
+    step = 0.6 / 400 / SPEED
+    rail = moving_kernel(TRACK, SPEED, step, duration=0.02, positions=4)
+    monkeypatch.setattr("asperity.radiation.passing.next_fast_len", lambda length, real: length)
+    displacement, _ = passed_points(rail, np.full((1, 3000), LOAD), -2.3985, [2.1])
+    assert displacement.shape == (1, 1, 3000)
+    assert displacement.max() > 0.0

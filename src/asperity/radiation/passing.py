@@ -46,13 +46,17 @@ def passed_points(
     stride = kernel.speed * kernel.time_step / bay_length  # in bays
     count = forces.shape[1]
     taps = kernel.weights.shape[1]
-    waves = _Waves(kernel, next_fast_len(taps + min(count, math.ceil(1.0 / stride)), real=True))
+    bays = range(math.floor(first), math.floor(first + stride * (count - 1)) + 1)
+    ends = {bay: min(max(0, math.ceil((bay - first) / stride)), count) for bay in (*bays, bays.stop)}
+    # rounding may put a step more into a bay, where a bay is passed in a whole number of steps
+    most = max(ends[bay + 1] - ends[bay] for bay in bays)
+    most = max(most, min(count, math.ceil(1.0 / stride)))
+    waves = _Waves(kernel, next_fast_len(taps + most, real=True))
     passed = [_Point(waves, place, taps) for place in places]
     displacement = np.zeros((len(places), len(forces), count))
-    bays = range(math.floor(first), math.floor(first + stride * (count - 1)) + 1)
 
     def by_forces_in(bay: int) -> tuple[slice, list[Array]]:
-        begin, end = (min(max(0, math.ceil((at - first) / stride)), count) for at in (bay, bay + 1))
+        begin, end = ends[bay], ends[bay + 1]
         within = first + stride * np.arange(begin, end) - bay
         acting = forces[:, begin:end]
         sides = {point.side(bay) for point in passed} - {0}
