@@ -51,6 +51,29 @@ CASES = {
         "duration": "0.5 s",
         "surface": {"spectrum": "iso3095"},
     },
+    "bearing": {
+        "kind": "ball-bearing",
+        "speed": "1800 1/min",
+        "radial": "100 N",
+        "laws": ["hertz", "table"],
+        "duration": "50 ms",
+        "settling": "10 ms",
+        "bearing": {"name": "6205"},
+        "fault": {"on": "outer", "length": "0.18 mm", "depth": "0.1 mm"},
+    },
+    "creep": {
+        "kind": "wheel-on-rail",
+        "speed": "10 m/s",
+        "laws": ["linear"],
+        "duration": "0.2 s",
+        "settling": "50 ms",
+        "surface": {"spectrum": "iso3095"},
+        "wheel": {"section": "rigid"},
+        "contact": {"spacing": "1 mm", "samples": 2},
+        "numerics": {"highest_frequency": "2 kHz"},
+        "sideways": {"friction": 0.3},
+        "creep": {"angle_of_attack": "8 mrad", "kinetic": 0.5, "falling_velocity": "1 m/s"},
+    },
 }
 """By name; of public keys that both trees know."""
 ALLOWED = 1.1

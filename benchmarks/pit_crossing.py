@@ -22,9 +22,10 @@ import numpy as np
 from asperity import BallBearing, HalfSpace
 from asperity.laws import HertzLaw
 from asperity.laws.layout import force
+from asperity.laws.periodic import Periodic
 from asperity.reduction.texture import StateTexture
 from asperity.rolling.bearing import BearingRings, roll_bearing
-from asperity.scenarios.raceway_laws import Closed, raceway_laws, raceway_on
+from asperity.scenarios.raceway_laws import raceway_laws, raceway_on
 from asperity.structures.ring import Ring
 from asperity.surfaces.faults import Fault
 
@@ -50,16 +51,16 @@ def lumped(name: str, length: float, depth: float) -> Callable[[np.ndarray], np.
     return lambda along: depth * np.sin(0.5 * np.pi * np.clip((0.5 * length - abs(along)) / EDGE, 0, 1)) ** 2
 
 
-def law_of(down: Callable[[np.ndarray], np.ndarray]) -> Closed:
+def law_of(down: Callable[[np.ndarray], np.ndarray]) -> Periodic:
     """Hertz's contact let down around angle zero."""
     around, beyond = round(2 * np.pi * RADIUS / FINE), 40
     dx = 2 * np.pi * RADIUS / around
     along = ((np.arange(-beyond, around + beyond + 1) + around // 2) % around - around // 2) * dx
     texture = StateTexture.unfiltered(down(along), dx, -beyond * dx)
-    return Closed(HertzLaw(CONTACT.stiffness_constant, texture, DAMPING), around * dx)
+    return Periodic(HertzLaw(CONTACT.stiffness_constant, texture, DAMPING), around * dx)
 
 
-def table(length: float) -> Closed:
+def table(length: float) -> Periodic:
     """The solved contact over a pit at angle zero."""
     surface = raceway_on(CONTACT, LOAD, RADIUS, faults=[Fault("pit", length=length, depth=DEPTH)])
     return raceway_laws(["table"], CONTACT, surface, LOAD, damping=DAMPING)["table"]
@@ -75,7 +76,7 @@ def solved(length: float, along: float) -> float:
     return HalfSpace(gap.shape, spacing, CONTACT.modulus).solve(gap, HELD).force
 
 
-def rolled(law: Closed) -> tuple[np.ndarray, np.ndarray]:
+def rolled(law: Periodic) -> tuple[np.ndarray, np.ndarray]:
     """Place of the first ball beside the middle of the pit, m, and force on the outer raceway, N."""
     turning = BEARING.kinematics(SPEED, contact_angle=0.0)
     inner = HertzLaw(BEARING.inner_contact.stiffness_constant, None, DAMPING)

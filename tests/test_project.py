@@ -181,6 +181,15 @@ def test_every_page_is_named_once_in_the_tables_of_contents():
     assert sorted(listed) == sorted(page for page in pages if page != docs / "index.md")
 
 
+def test_every_benchmark_is_named_by_the_question_that_it_answers():
+    index, folder = text("benchmarks/README.md").split("\n## ")[0], ROOT / "benchmarks"
+    assert len(re.findall(r"^\*\*.*\?\*\*$", index, re.MULTILINE)) >= 6
+    left = {"README.md"} | set(re.findall(r"!\[.*?\]\(([\w.]+)\)", text("benchmarks/README.md")))
+    files = {path.name for path in folder.iterdir() if path.is_file()} - left
+    assert [name for name in sorted(files) if f"`{name}`" not in index] == []
+    assert [name for name in re.findall(r"`(\w+\.py)`", index) if not (folder / name).exists()] == []
+
+
 def test_files_that_contributors_are_sent_to_are_there():
     package = ROOT / "src" / "asperity"
     places = [ROOT, package, package / "laws", package / "surfaces", ROOT / ".github/workflows"]
