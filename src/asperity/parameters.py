@@ -37,6 +37,7 @@ _WORDS = {
     "dB": ("a level", "+0 dB"),
     "rad": ("an angle", "30 deg"),
     "rad/m": ("an angle per length", "0.1 rad/m"),
+    "m^3/J": ("a wear rate", "7e-4 mm^3/J"),
 }
 
 _MEANT = {"rad": "deg", "m/s": "km/h"}
