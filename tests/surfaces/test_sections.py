@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from asperity.errors import InputError
-from asperity.surfaces.readers import read_section, read_surface
+from asperity.surfaces.readers import read_across, read_surface
 from asperity.surfaces.readers.positions import made_even
 
 SIMPACK = """! *** SIMPACK Rail-Wheel Profile ***
@@ -53,7 +53,7 @@ def is_the_circle(line):
 @pytest.mark.parametrize("how", [{}, {"weight": "\t1.0"}, {"unit": "", "scale": 1.0}], ids=str)
 def test_a_profile_of_simpack_is_read_with_heights_out_of_its_material(simpack, kind, how):
     """Its one z points downwards: out of a wheel, into a rail."""
-    is_the_circle(read_section(simpack(kind, **how)))
+    is_the_circle(read_across(simpack(kind, **how)))
     is_the_circle(read_surface(simpack(kind, **how)))
 
 
@@ -66,7 +66,7 @@ def test_a_profile_of_simpack_is_read_with_heights_out_of_its_material(simpack, 
 ])  # fmt: skip
 def test_a_profile_of_simpack_that_is_not_understood_is_refused(simpack, how, message):
     with pytest.raises(InputError, match=message):
-        read_section(simpack(0, **how))
+        read_across(simpack(0, **how))
 
 
 def test_the_name_of_such_a_file_is_not_enough(tmp_path, simpack):
@@ -74,16 +74,16 @@ def test_the_name_of_such_a_file_is_not_enough(tmp_path, simpack):
     with pytest.raises(
         InputError, match=r"b.prw: received a file that starts with .*; allowed: a Simpack profile"
     ):
-        read_section(tmp_path / "b.prw")
+        read_across(tmp_path / "b.prw")
     with pytest.raises(InputError, match=r"type in a.prw: received 2; allowed: 0, a rail, or 1, a wheel"):
-        read_section(simpack(2))
+        read_across(simpack(2))
 
 
 @pytest.mark.parametrize("order", [slice(None), slice(None, None, -1)], ids=["rising", "falling"])
 def test_uneven_places_of_a_section_are_interpolated_and_those_of_a_surface_refused(tmp_path, order):
     rows = "\n".join(f"{1e3 * y:.6f};{1e3 * (np.sqrt(RADIUS**2 - y**2) - RADIUS):.6f}" for y in Y[order])
     (tmp_path / "a.csv").write_text(f"y (mm);z (mm)\n{rows}\n")
-    is_the_circle(read_section(tmp_path / "a.csv"))
+    is_the_circle(read_across(tmp_path / "a.csv"))
     with pytest.raises(InputError, match="not uniform"):
         read_surface(tmp_path / "a.csv")
 

@@ -17,8 +17,7 @@ from asperity.errors import InputError
 from asperity.structures.outline import HIGHEST_FLANGE
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.levelling import level
-from asperity.surfaces.readers import hints
-from asperity.surfaces.readers import read_section as read_line_across
+from asperity.surfaces.readers import hints, read_across
 from asperity.surfaces.readers.belief import told_length
 from asperity.written_numbers import count_of, rounded
 
@@ -83,7 +82,7 @@ def read_section(measured: Path | Profile, key: str) -> Profile:
         If the file does not hold one complete line.
     """
     with hints.spelled(hints.in_case(key.partition(".")[0], {})):
-        section = read_line_across(measured) if isinstance(measured, Path) else measured
+        section = read_across(measured) if isinstance(measured, Path) else measured
     if not isinstance(section, Profile):
         raise InputError(key, "a map of heights", "one line across the path")
     count = len(section.heights)

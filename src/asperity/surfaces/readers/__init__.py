@@ -150,7 +150,7 @@ def read_all(
     return _finished(surfaces, transpose, fill, spikes, lines)
 
 
-def read_section(path: str | Path) -> guards.Surface:
+def read_across(path: str | Path) -> guards.Surface:
     """Read the section of a body across its path, a line whose places need not be even.
 
     Uneven ones are interpolated, see `positions.made_even`. All else is as `read_surface` reads it.

@@ -13,6 +13,7 @@ from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.readers import guards, positions
 from asperity.surfaces.readers.hints import Hints
 from asperity.text_files import lines_in, number_in, read_text
+from asperity.written_numbers import count_of
 
 LARGEST = 1 << 24
 """Bytes of a file; those of programs have some 20 kB."""
@@ -52,7 +53,7 @@ def read(path: Path, hints: Hints) -> list[guards.Surface]:
             points.append(_point(words.split(), path.name))
         elif match := _KEY.match(words):
             stated.setdefault(match[1], _number(match[2]))
-    require(len(points) > 1, path.name, f"{len(points)} points", "two or more", guards.EXPORT)
+    require(len(points) > 1, path.name, count_of(len(points), "point"), "two or more", guards.EXPORT)
     return [_section(np.array(points), stated, path.name)]
 
 
