@@ -215,9 +215,10 @@ class SleeperTop:
 
     Notes
     -----
-    A rigid circular piston of the same area in an infinite rigid plane. Each half sleeper radiates by
-    itself: where the sound is longer than some sleeper distances, below about 300 Hz, neighbours that move
-    together radiate more than the sum. Bending of the sleepers and absorption by the ballast are left out.
+    A rigid circular piston of the same area in an infinite rigid plane; a strip of 1.3 m by 0.25 m radiates
+    1 to 2 dB less from 160 to 400 Hz. Each half sleeper radiates by itself: where the sound is longer than
+    some sleeper distances, below about 300 Hz, neighbours that move together radiate more than the sum.
+    Bending of the sleepers and absorption by the ballast are left out.
     """
 
     length: float
