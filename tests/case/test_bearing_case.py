@@ -7,7 +7,6 @@ from copy import deepcopy
 import numpy as np
 import pytest
 
-import asperity
 from asperity.case.cases import as_case, parse_case, template
 from asperity.errors import CaseError, InputError
 from asperity.scenarios.prepared_bearing import expected, prepare_bearing
@@ -259,10 +258,4 @@ test_a_fault_off_the_raceway_is_refused_before_the_run = refusals(
         r"fault.length: received 5 mm, 90",
     ),
     of=lambda fault: prepare_bearing(as_case(CASE | {"fault": fault})),
-)
-
-
-NOT_THERE = "received a ball-bearing case, for which it is not available; allowed: a kind that has it: ball"
-test_what_is_not_there_for_a_bearing_says_so = refusals(
-    (lambda: asperity.optimise(CASE), f"optimisation: {NOT_THERE}"),
 )

@@ -13,6 +13,7 @@ from click.shell_completion import BashComplete
 from asperity.case import PRESETS
 from asperity.case.cases import read_case
 from asperity.cli import main
+from asperity.cli.commands import TEMPLATES
 from asperity.errors import ComputationError
 from asperity.studies.definition import load_study
 from command_line import call, program
@@ -132,7 +133,7 @@ def test_help_lists_every_command_with_a_whole_sentence():
 @pytest.mark.parametrize(
     ("words", "completions"),
     [
-        ("new ", {*PRESETS, "study", "what-helps", "what-helps-in-bearings", "optimisation"}),
+        ("new ", {*PRESETS, *TEMPLATES}),
         ("new w", {"wheel-on-rail", "what-helps", "what-helps-in-bearings"}),
         ("new --law sh", {"shifted", "shifted-unfiltered"}),
         ("run --device ", {"cpu", "gpu"}),

@@ -40,7 +40,7 @@ def folder(tmp_path_factory, cache_of_module):
     with pytest.MonkeyPatch.context() as patch:
         found = []
         search = running.optimised
-        patch.setattr(optimising, "optimised", lambda *words: found.append(search(*words)) or found[0])
+        patch.setattr(optimising, "searched", lambda *words: found.append(search(*words)) or found[0])
         done = optimised(place, "--json")
     assert done.exit_code == 0, done.output
     return place / "out", json.loads(done.stdout), found[0]
@@ -104,7 +104,7 @@ def test_its_document_and_its_page_are_what_the_documentation_says(folder):
 def again(folder, tmp_path, monkeypatch):
     """The same without the search, which is done."""
     shutil.copytree(folder[0].parent, tmp_path, dirs_exist_ok=True)
-    monkeypatch.setattr(optimising, "optimised", lambda *_: folder[2])
+    monkeypatch.setattr(optimising, "searched", lambda *_: folder[2])
     return lambda *words: optimised(tmp_path, *words)
 
 

@@ -234,6 +234,8 @@ class AnyCase(Section):
     """Function (ready case, its result) that lists the settings by which it is made finer."""
     PRESSED_BY: ClassVar[str]
     """Function (case) that lays out the contact which the page lets people press."""
+    OPTIMISED_BY: ClassVar[str] = ""
+    """How its texture is optimised, an `asperity.optimising.kinds.Optimisation`; empty of a kind without."""
     WRITTEN_OUT: ClassVar[Mapping[str, str]] = {}
     """Values, in TOML, of keys that have no default and shall stand in a commented case."""
     SHOWN: ClassVar[Mapping[str, tuple[str, ...]]] = {}

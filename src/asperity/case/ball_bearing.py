@@ -265,6 +265,7 @@ class BearingUnderLoad(AnyCase):
     COMPUTED_BY = "asperity.scenes.bearing.bearing_result"
     REFINED_BY = "asperity.scenes.bearing_refining.settings_of_bearing"
     PRESSED_BY = "asperity.serving.contact_preview.raceway_surface"
+    OPTIMISED_BY = "asperity.optimising.bearing.OF_BEARINGS"
     WRITTEN_OUT: ClassVar = {
         "bearing.name": '"6205"', "axial": '"100 N"', "inner_raceway.waviness": '"0.5 um"',
         "outer_raceway.waviness": '"0.5 um"',

@@ -60,6 +60,7 @@ class Case(AnyCase):
     COMPUTED_BY = "asperity.scenes.result.computed_result"
     REFINED_BY = "asperity.scenarios.refining.settings_of_scene"
     PRESSED_BY = "asperity.serving.contact_preview.scene_surface"
+    OPTIMISED_BY = "asperity.optimising.running.OF_BODIES"
     ROLLING: ClassVar[str]
     """Section of what rolls; of a contact of several, its name in messages."""
     OVER: ClassVar[str] = ""

@@ -20,7 +20,7 @@ Document = dict[str, Any]
 
 def templates() -> tuple[str, ...]:
     """List what 'asperity new' can write."""
-    return (*kinds(), "study", "what-helps", "what-helps-in-bearings", "optimisation")
+    return (*kinds(), *commands.TEMPLATES)
 
 
 @click.group(cls=Program, document=False, context_settings={"help_option_names": ["-h", "--help"]})
@@ -103,12 +103,12 @@ def new(kind: str, laws: tuple[str, ...]) -> None:
     """
     from asperity.case.cases import not_a_kind, template
     from asperity.case.ready_lists import READY_LISTS
-    from asperity.optimising.definition import aim_template
+    from asperity.optimising.templates import AIM_TEMPLATES
     from asperity.studies.definition import TEMPLATE
 
     if kind not in templates():
         raise not_a_kind(kind, templates())
-    others = {"study": lambda: TEMPLATE, "optimisation": aim_template, **READY_LISTS}
+    others = {"study": lambda: TEMPLATE, **AIM_TEMPLATES, **READY_LISTS}
     say(others[kind]() if kind in others else template(kind, laws), lines=True)
 
 
@@ -358,8 +358,8 @@ def study(
 def optimise(optimisation: Path, directory: Path | None, **choices: bool) -> Document:
     """Find the texture that rolls quietest within bounds, or the roughest that keeps a level.
 
-    Searches with a cheap law and verifies with another, before and after. Textures that were rolled over are
-    kept: interrupted, the same command goes on where it was.
+    Of a ball bearing, the roughest waves that keep velocities under limits. Searches with a cheap law and
+    verifies with another. What was rolled is kept: interrupted, the same command goes on where it was.
 
     Examples
     --------

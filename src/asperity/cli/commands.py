@@ -30,6 +30,8 @@ from asperity.terminal import (
     standard_streams,
 )
 
+TEMPLATES = ("study", "what-helps", "what-helps-in-bearings", "optimisation", "optimisation-of-bearings")
+"""What 'asperity new' writes beside cases."""
 PATH = click.Path(path_type=Path)
 PICTURES = (".svg", ".pdf", ".png")
 Completion = Callable[[click.Context, click.Parameter, str], list[str]]

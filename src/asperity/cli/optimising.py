@@ -11,9 +11,12 @@ from asperity.arguments import Array
 from asperity.case import any_case, toml
 from asperity.case.form import content, file_digest
 from asperity.cli.commands import mark_of, refuse_other_case
+from asperity.cli.optimising_bearing import document_of_bearing, page_of_bearing, rows_of_bearing
 from asperity.laws import spec_of
+from asperity.optimising.bearing import OptimisedBearing
 from asperity.optimising.definition import load_aim
-from asperity.optimising.running import Optimised, optimised
+from asperity.optimising.kinds import searched
+from asperity.optimising.running import Optimised
 from asperity.progress import progress_bar
 from asperity.reporting import data, page, study_figures
 from asperity.reporting.figure import PageFigure
@@ -49,43 +52,51 @@ def run_optimisation(
     if not overwrite:
         refuse_other_case("texture", asked, written["case"], "optimisation")
     with files.alone_in(directory), progress_bar() as progress:
-        found = optimised(case, aim, progress)
-        columns = _columns(found)
-        rows = np.stack(list(columns.values()), axis=1).tolist()
+        found = searched(case, aim, progress)
         with files.together(directory, last=FILES["case"]) as new:
-            _write(found, columns, rows, new, report=report)
+            told = _written(found, new, report=report)
             keys = any_case.in_toml(found.case, in_memory=lambda *_: FILES["texture"])
             text = toml.toml_text({"kind": found.case.kind, **keys})
             files.write_bytes(new / FILES["case"], f"{mark_of('texture', asked, text)}{text}".encode())
+            written = {what: path for what, path in written.items() if (new / FILES[what]).exists()}
     say(found.sentence)
     say_files(written)
-    return {
-        "summary": found.sentence,
-        "quantity": found.measure.meaning,
-        "units": found.measure.units,
-        "settled": found.settled,
-        "changes": found.changes,
-        "levels": {law: list(levels) for law, levels in found.levels.items()},
-        "limit": found.aim.limit,
-        "limits": found.active,
-        "columns": list(columns),
-        "rows": rows,
-        "files": written,
-    }
+    return {"summary": found.sentence, "settled": found.settled, **told, "files": written}
 
 
-def _write(
-    found: Optimised, columns: dict[str, Array], rows: list[list[float]], directory: Path, *, report: bool
-) -> None:
-    """Write the texture found as tables and on a page, and the runs before and after it."""
-    texture = np.stack([found.after.wavelength, found.after.levels], axis=1).tolist()
-    write_csv(directory / FILES["texture"], ["wavelength (m)", "level (dB re 1 um)"], texture)
-    write_csv(directory / FILES["table"], list(columns), rows)
+def _written(found: Optimised | OptimisedBearing, directory: Path, *, report: bool) -> dict[str, Any]:
+    """Write what was found as tables and on a page, with the runs before and after; what is said of it."""
     for what, tree in (("before", found.result_before), ("after", found.result_after)):
         run = save(tree, directory / FILES[what])
         if report:
             write_page(tree, run.with_name(REPORT))
-    files.write_bytes(directory / FILES["page"], _page(found, columns, report=report).encode())
+    if isinstance(found, OptimisedBearing):
+        told = document_of_bearing(found)
+        rows = rows_of_bearing(found)
+        shown = page_of_bearing(found, FILES["table"], {"case": FILES["case"]}, report=report)
+    else:
+        texture = np.stack([found.after.wavelength, found.after.levels], axis=1).tolist()
+        write_csv(directory / FILES["texture"], ["wavelength (m)", "level (dB re 1 um)"], texture)
+        told = _document(found)
+        columns = _columns(found)
+        rows = np.stack(list(columns.values()), axis=1).tolist()
+        shown = _page(found, columns, report=report)
+    write_csv(directory / FILES["table"], told["columns"], rows)
+    files.write_bytes(directory / FILES["page"], shown.encode())
+    return told | {"rows": rows}
+
+
+def _document(found: Optimised) -> dict[str, Any]:
+    """What came of it, for programs."""
+    return {
+        "quantity": found.measure.meaning,
+        "units": found.measure.units,
+        "changes": found.changes,
+        "levels": {law: list(levels) for law, levels in found.levels.items()},
+        "limit": found.aim.limit,
+        "limits": found.active,
+        "columns": list(_columns(found)),
+    }
 
 
 def _columns(found: Optimised) -> dict[str, Array]:

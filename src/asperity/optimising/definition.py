@@ -14,6 +14,7 @@ from asperity.case import any_case, cases, form, rolled_over, scene
 from asperity.case.surface import DEFECTS, LENGTH, LEVEL, Surface
 from asperity.errors import InputError
 from asperity.optimising.allocation import Limits
+from asperity.optimising.kinds import optimisation_of
 from asperity.parameters import Choice, ListOf, Number, Origin, Quantity, key, optional
 from asperity.scenarios import preparing, records
 from asperity.scenes import noise, schema
@@ -315,12 +316,12 @@ def _for_each(name: str, values: tuple[float, ...] | None, otherwise: Array) -> 
     return np.broadcast_to(np.array(values), otherwise.shape)
 
 
-def load_aim(path: str | os.PathLike[str]) -> tuple[scene.Case, Aim]:
-    """Read a case, and what its texture shall be, from TOML: ``case``, a path or a section, and `Aim`."""
+def load_aim(path: str | os.PathLike[str]) -> tuple[any_case.AnyCase, form.Section]:
+    """Read a case, and what its texture shall be, from TOML: ``case``, a path or a section, and its aim."""
     remedy = "Check the path, or write one with 'asperity new optimisation > optimisation.toml'."
     keys, base, origin = cases.read_with_case(path, "optimisation", remedy)
-    case = cases.of_bodies(cases.case_of(base, origin), "optimisation")
-    return case, Aim.read(keys, Origin.file(path))
+    case = cases.case_of(base, origin)
+    return case, optimisation_of(case).aim.read(keys, Origin.file(path))
 
 
 def aim_template() -> str:

@@ -10,6 +10,7 @@ import numpy as np
 
 from asperity.arguments import Array
 from asperity.case import cases, form, scene
+from asperity.case.any_case import AnyCase
 from asperity.errors import InputError, PhysicsWarning
 from asperity.optimising.allocation import Limits, Trial, rms_of, search
 from asperity.optimising.definition import (
@@ -21,6 +22,7 @@ from asperity.optimising.definition import (
     measures_of,
     with_texture,
 )
+from asperity.optimising.kinds import Optimisation, optimisation_of, searched
 from asperity.progress import Progress, shown_progress
 from asperity.reporting.data import written_units
 from asperity.running import run
@@ -32,6 +34,7 @@ from asperity.threads import one_thread_in_linear_algebra
 from asperity.written_numbers import between, engineering, rounded, signed
 
 if TYPE_CHECKING:
+    from asperity.optimising.bearing import OptimisedBearing
     from asperity.scenes.report import Result
 
 FORMAT = 2
@@ -158,10 +161,10 @@ class Optimised:
 
 
 def optimise(
-    case: str | os.PathLike[str] | Mapping[str, Any] | scene.Case,
+    case: str | os.PathLike[str] | Mapping[str, Any] | AnyCase,
     progress: Progress | None = None,
     **aim: Any,
-) -> Optimised:
+) -> "Optimised | OptimisedBearing":
     """Find the texture that rolls quietest, or the roughest that keeps a limit.
 
     Parameters
@@ -172,11 +175,12 @@ def optimise(
         ``progress(done, total, message)``, called during long work.
     **aim
         What the texture shall be, in SI or as text with a unit, as the keys that ``asperity new
-        optimisation`` lists: ``quantity``, ``rms_at_least``, ``budget``, ``limit`` and so on.
+        optimisation`` lists: ``quantity``, ``rms_at_least``, ``budget``, ``limit`` and so on; of a ball
+        bearing those of ``asperity new optimisation-of-bearings``: ``medium_band``, ``price`` and so on.
 
     Returns
     -------
-    Optimised
+    Optimised, or OptimisedBearing
         Textures before and after, the case with the one found, and both rolled over again.
 
     Raises
@@ -200,9 +204,11 @@ def optimise(
     >>> found.changes["linear"] < 0.0
     True
     """
-    given = cases.of_bodies(cases.as_case(case), "optimisation")
+    given = cases.as_case(case)
+    asked = optimisation_of(given).aim(**aim)
     with shown_progress(progress) as told:
-        return optimised(given, Aim(**aim), told)
+        found: Optimised | OptimisedBearing = searched(given, asked, told)
+        return found
 
 
 def optimised(case: scene.Case, aim: Aim, progress: Progress) -> Optimised:
@@ -250,3 +256,6 @@ def _rolled(base: scene.Case, aim: Aim, measure: Measure, bands: Bands, progress
     energies = np.maximum(band_energies(frequency, density, *bands.edges(case.speed)), 0.0)
     whole = float(density.sum() * (frequency[1] - frequency[0]))
     return Trial(bands.levels[bands.changed], bands.lateral, energies, max(whole - energies.sum(), 0.0))
+
+
+OF_BODIES = Optimisation(Aim, optimised)

@@ -23,6 +23,7 @@ from asperity.written_numbers import count_of, rounded
 MOST_POINTS = 2**26
 """Points of a raceway: 512 MiB."""
 _WAVES = "1 nm to 1 mm: raceways and balls are rounder"
+_LISTED_WAVES = "1e-6 nm to 1 mm: short waves have little, and raceways and balls are rounder"
 _RMS = "0.01 nm to 0.1 mm: finishes lie between"
 _HIGHEST = "1 to 100000: others are shorter than contacts"
 _LENGTHS = "1 nm to 1 m: textures lie between"
@@ -64,7 +65,7 @@ class AroundTexture:
 
     waves: tuple[int, ...] = parameter(ListOf(_ORDER), [3, 9], "waves per turn", _HIGHEST, default=())
     amplitudes: tuple[float, ...] = parameter(
-        _AMPLITUDES, ["1 um", "0.1 um"], "amplitude of each of the waves", _WAVES, default=()
+        _AMPLITUDES, ["1 um", "0.1 um"], "amplitude of each of the waves", _LISTED_WAVES, default=()
     )
     waviness: float | None = parameter(LENGTH, "0.5 um", "amplitude at first_order", _WAVES, default=None)
     first_order: int = parameter(_ORDER, 2, "fewest waves per turn of the waviness", _HIGHEST, default=2)
