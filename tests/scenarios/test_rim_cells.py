@@ -2,6 +2,7 @@
 
 import math
 import re
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -15,8 +16,8 @@ from asperity.fitting import running as fitting
 from asperity.optimising import running as optimising
 from asperity.optimising.definition import Aim
 from asperity.running import prepare_case
-from asperity.scenarios import problems, rim_cells
-from asperity.scenarios.laws import ReducedCase
+from asperity.scenarios import problems, reducing, rim_cells
+from asperity.scenarios.laws import ReducedCase, reduced_case
 from asperity.scenarios.preparing import Work, with_cells_fixed
 from asperity.scenarios.reducing import samples_of
 from asperity.scenarios.refining import settings_for
@@ -82,10 +83,31 @@ def test_other_wheels_are_pressed_as_means_too():
     under = []
     for cells in ("whole", "covered"):
         made = prepared(**keys, cells=cells, surface={"spectrum": "iso3095", "lateral": 1.0})
-        under.append(whole(textures_under(made.case, 1, made.textures).path))
-    points, means = under
+        under.append(textures_under(made.case, 1, made.textures))
+    points, means = (whole(textures.path) for textures in under)
+    np.testing.assert_array_equal(whole(under[1].averaged.path), points)
     np.testing.assert_allclose(means[1:-1], cell_means(points)[1:-1], atol=1e-12 * np.ptp(points))
     assert not np.allclose(means, points, atol=1e-6 * np.ptp(points))
+
+
+def test_what_is_averaged_under_a_patch_is_no_mean_already(monkeypatch):
+    """Else short waves would be lost twice by averaged heights, and won by filters of the line."""
+    followed = []
+
+    def found(strips, *rest, lines, **options):
+        followed.append([strip.heights for strip in lines])
+
+    monkeypatch.setattr(reducing, "filters_of", found)
+    force = np.array([1.0, 30.0])
+    states = SimpleNamespace(mean_force=force, approaches=force, curve=SimpleNamespace(stiffness=np.sqrt))
+    planes = []
+    for cells in ("whole", "covered"):
+        made = prepared(cells=cells)
+        reducing.line_filters(made, states, lambda *_: None)
+        without = replace(made, textures=replace(made.textures, maps=()))
+        planes.append(reduced_case(without, lambda *_: None).planes)
+    np.testing.assert_array_equal(*planes)
+    np.testing.assert_array_equal(*followed)
 
 
 def test_a_device_takes_whole_cells_alone(monkeypatch):

@@ -47,7 +47,8 @@ class ReducedCase(PreparedCase):
         """Those of another contact of the same bodies, by whose texture it bears and its load, N."""
         textures = textures_under(self.case, contact, self.textures)
         shape = replace(self.shape, load=load)
-        planes = None if textures.path is None else reducing.patch_planes(textures.path, self.shape)
+        path = textures.averaged.path
+        planes = None if path is None else reducing.patch_planes(path, self.shape)
         return replace(self, textures=textures, shape=shape, planes=planes)
 
     def build(self, name: str) -> Law:
@@ -112,7 +113,7 @@ class ReducedCase(PreparedCase):
 
     def _areal(self) -> StateTexture:
         """Texture averaged under the patch of each state; not held, as it is as long as the path in each."""
-        path = self.textures.path
+        path = self.textures.averaged.path
         axes = self._reduced.semi_axes
         approaches = self._reduced.approaches
         assert path is not None
@@ -184,7 +185,7 @@ class ReducedCase(PreparedCase):
 
 def reduced_case(prepared: PreparedCase, progress: Progress) -> ReducedCase:
     """Reduce a case to what its laws are made of; one without samples has no state functions."""
-    path = prepared.textures.path
+    path = prepared.textures.averaged.path
     reduction = None
     planes = None if path is None else reducing.patch_planes(path, prepared.shape)
     if prepared.textures.maps:

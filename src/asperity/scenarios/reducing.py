@@ -315,7 +315,7 @@ def line_filters(
     return filters_of(
         textures.strips, shape, loads, tuple(needed), hardness=contact.hardness,
         accuracy=case.numerics.force_accuracy, degree=contact.filter_degree, order=contact.filter_taps,
-        most=len(textures.line) - 1, progress=progress,
+        most=len(textures.line) - 1, progress=progress, lines=textures.averaged.strips,
     )  # fmt: skip
 
 
@@ -340,10 +340,12 @@ def filters_of(
     degree: int | None = None,
     order: int | None = None,
     progress: Progress | None = None,
+    lines: Sequence[HeightMap] | None = None,
 ) -> tuple[LineFilters, scan.Counts]:
     """Scan strips in some states, and design the filter of each normalisation, of so many taps at most.
 
-    Of strips without texture it is sin q/q in closed form.
+    Forces follow the lines of the strips, or those of others where what is pressed are means over cells. Of
+    strips without texture it is sin q/q in closed form.
     """
     dx = shape.spacing[0]
     approaches = states.approaches
@@ -366,7 +368,7 @@ def filters_of(
     half = shape.body.shape[0] // 2
     beside = (axes[:, 1] / shape.spacing[1]).astype(int)
     spectra = []
-    for strip, scanned in zip(strips, scans, strict=True):
+    for strip, scanned in zip(lines or strips, scans, strict=True):
         rows = scanned.forces.shape[1] * stride
         # the lines under the patch of each state, at every row of the grid
         spectra.append(filter.filter_spectra(scanned.forces, strip.heights[half : half + rows].T, dx, beside))

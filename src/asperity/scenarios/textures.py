@@ -74,6 +74,14 @@ class Textures:
         return replace(self, maps=maps, strips=strips, path=path, points=self)
 
     @property
+    def averaged(self) -> "Textures":
+        """Those that are averaged under a patch: heights at points where they are known, not means of means.
+
+        What has run in is known as means alone.
+        """
+        return self if self.points is None or self.untouched is not None else self.points
+
+    @property
     def rms_slope(self) -> float:
         """Rms slope of the samples on the contact grid."""
         return float(np.sqrt(np.mean([statistics.rms_slope(sample) ** 2 for sample in self.maps])))
@@ -202,13 +210,16 @@ def textures_under(case: Case, contact: int, first: Textures) -> Textures:
     turns = [_turn(case, each, grid, seed).heights for each in (0, contact)]
     change = turns[1] - turns[0]
     middle = turns[0].shape[1] // 2
-    if first.points is not None:
+    points = first.points
+    if points is not None:
+        if points.path is not None:
+            points = replace(points, path=turning(points.path, change, -before))
         change = cell_means(np.pad(change, ((1, 1), (0, 0)), mode="wrap"))[1:-1]
     along = np.arange(rows) - before
     added = (turns[1][:, middle] - turns[0][:, middle])[along % len(change)]
     path = None if first.path is None else turning(first.path, change, -before)
     parts = first.parts | {"wheel": first.parts["wheel"] + added}
-    turned = replace(first, path=path, line=first.line + added, parts=parts)
+    turned = replace(first, path=path, line=first.line + added, parts=parts, points=points)
     return replace(turned, **_defects(case, contact, first))
 
 
