@@ -255,9 +255,9 @@ def test_spin_moves_the_rim_of_a_contact_no_faster_than_creepages_may():
 
 def test_what_creeps_wears_as_the_cells_of_its_contact_do():
     """Volume over work times heat over speed; cell by cell by the slip of each, in partial slip as well."""
-    keys = BALL | {"laws": ["linear"], "duration": "5 ms"}
     rate = 7e-13  # m³/J, 5.5 µg of steel
-    for creepage in (0.0005, 0.03):
+    for creepage, contacts in ((0.0005, 1), (0.03, 2)):
+        keys = {1: BALL, 2: BODIES}[contacts] | {"laws": ["linear"], "duration": "5 ms"}
         creep = {"longitudinal": creepage, "wear": "7e-4 mm^3/J"}
         result = asperity.run(keys | {"creep": creep})
         case = asperity.read_case(keys | {"creep": creep})
@@ -265,7 +265,7 @@ def test_what_creeps_wears_as_the_cells_of_its_contact_do():
         rolling, smooth = smooth_with_friction(prepared, friction_of(case))
         found = rolling.roll(smooth, (creepage, 0.0), speed=case.speed)
         law = EnergyWear(mild=rate * 7850.0, plateau=math.inf, onset=math.inf, density=7850.0)
-        section = wear_depth(rolling, found, law).sum() * rolling.half_space.spacing[1]
+        section = contacts * wear_depth(rolling, found, law).sum() * rolling.half_space.spacing[1]
         worn = result["rolling/worn_area"]
         assert float(worn[0]) == pytest.approx(section, rel=0.02)  # the force varies
         width = 2.0 * prepared.shape.semi_axes[1]

@@ -11,6 +11,7 @@ from asperity.case.cases import parse_case
 from asperity.laws import names
 from asperity.optimising.definition import ACCELERATION, measures_of
 from asperity.reference.railways import iso_3095_decay_rate
+from asperity.reporting.data import signed
 from asperity.scenes.track import described_losses, loss_factor_error
 from asperity.spectra import nominal_frequency
 from small_cases import changed
@@ -64,6 +65,15 @@ def test_groups_and_provenance(tree, kind):
     lost = {"bodies": "None of the 2 contacts is ever lost"}
     verdict = lost.get(kind, f"The {kind.partition('-')[0]} never loses contact")
     assert tree.attrs["verdict"].startswith(verdict)
+
+
+def test_what_observers_doubt_stands_in_the_table_of_validity(wheel):
+    """After what is asked of the contact: that of the track, whose largest error it holds."""
+    checks = json.loads(wheel["contact"].attrs["validity"])
+    row = checks[-1]
+    assert row["quantity"] == "error of the contact force for constant loss factors, at most"
+    error = wheel["track/loss_factor_force_error"].values
+    assert row["value"].startswith(signed(float(error[int(np.abs(error).argmax())])))
 
 
 @pytest.mark.usefixtures("own_cache")
