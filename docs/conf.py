@@ -49,6 +49,7 @@ nb_number_source_lines = False
 
 autosummary_generate = ["generated/api.rst"]
 autodoc_typehints = "none"
+python_maximum_signature_line_length = 90  # longer ones have a line for each parameter
 toc_object_entries_show_parents = "hide"  # names of a class are long enough without its own
 autodoc_member_order = "bysource"
 numpydoc_show_class_members = False

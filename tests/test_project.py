@@ -170,6 +170,19 @@ def test_every_link_and_picture_of_a_page_leads_somewhere():
             )
 
 
+def test_what_holds_a_page_to_its_word_is_not_in_the_eyes_of_its_readers():
+    """Checks stand in cells that are left out, but within loops and in pages for those who extend it."""
+    checked = 0
+    for page in (ROOT / "docs").rglob("*.md"):
+        for cell in re.findall(
+            r"^```\{code-cell\}.*?\n(.*?)^```", page.read_text(encoding="utf-8"), re.M | re.S
+        ):
+            checked += "assert " in cell
+            shown = ":tags: [remove-cell]" not in cell and page.parent.name != "extend"
+            assert not (shown and re.search(r"^assert ", cell, re.MULTILINE)), page.name
+    assert checked > 30
+
+
 def test_every_page_is_named_once_in_the_tables_of_contents():
     docs = ROOT / "docs"
     pages = [page for page in docs.rglob("*.md") if not {"generated", "_build"} & set(page.parts)]
