@@ -296,6 +296,10 @@ def test_a_bearing_is_checked_run_reported_drawn_and_heard():
     asperity.save(tree, "twice/run.nc")
     call("compare", "out", "twice", "-o", "beside")
     page = Path("beside/comparison.html").read_text().replace("\u00a0", " ")
+    told = 1e6 * law["band_velocity"][0]
+    assert "twice against out, hertz: radial velocity +6.0 dB in 50 to 300 Hz" in page
+    assert f"({told:.3g} to {2.0 * told:.3g} µm/s)" in page
+    assert page.index('id="judged_bands"') < page.index('id="force_level"')
     assert "Velocities in the bands of ISO 15242-2" in page
     assert page.count("+6.0") >= 3
     rows = [row for row in Path("beside/comparison.csv").read_text().splitlines() if "band_velocity" in row]

@@ -74,7 +74,8 @@ def _place(at: xarray.DataArray) -> str:
 def summary(of: ComparedRuns) -> str:
     """Say in a few sentences how the runs after the first differ from it, by their first law.
 
-    Of the levels the first and the last: the force, and what it makes.
+    Of bearings the velocities by which they are judged; of others, of the levels, the first and the last:
+    the force, and what it makes.
     """
     shown = dict.fromkeys([*list(of.levels)[:1], *list(of.levels)[-1:]])
     keys = [str(item["key"]) for item in of.keys]
@@ -82,12 +83,28 @@ def summary(of: ComparedRuns) -> str:
     sentences = [f"The cases differ in {', '.join(keys[:4])}{more}" if keys else "The cases are the same"]
     for r, name in enumerate(of.names[1:], 1):
         told = [words for level in shown if (words := _level_words(of, level, r))]
-        words = "; ".join(told)
+        words = _velocity_words(of, r) or "; ".join(told)
         if of.another_texture(r):
             words = f"{ANOTHER}, so that chance is in every difference" + f" ({words})" * bool(words)
         if words:
             sentences.append(f"{name} against {of.names[0]}, {of.laws[0]}: {words}")
     return ". ".join(sentences) + "."
+
+
+def _velocity_words(of: ComparedRuns, run: int) -> str:
+    """Differences of the velocities of a bearing in its bands; nothing of runs that are no bearings."""
+    if BAND_VELOCITY.name not in of.table:
+        return ""
+    velocity = of.table[BAND_VELOCITY.name].values[:, 0]
+    change = of.table[f"{BAND_VELOCITY.name}_difference"].values[run, 0]
+    told = [
+        f"{data.signed(less)} dB in {band} ({rounded(1e6 * first)} to {rounded(1e6 * own)} µm/s)"
+        for band, less, first, own in zip(
+            of.table[JUDGED_BAND.name].values, change, velocity[0], velocity[run], strict=True
+        )
+        if np.isfinite(less)
+    ]
+    return f"radial velocity {', '.join(told)}" if told else ""
 
 
 def _level_words(of: ComparedRuns, name: str, run: int) -> str:
@@ -235,10 +252,10 @@ def comparison_page(of: ComparedRuns, file: str) -> str:
 def compared_blocks(of: ComparedRuns) -> list[page.Block]:
     """What the page shows: cases, what each run says, force, each level, contact."""
     found: list[page.Block] = [_runs_table(of), _case_table(of)]
-    if _known(of.table, _FORCE):
-        found.append(_numbers_table(of.table))
     if BAND_VELOCITY.name in of.table:
         found.append(_velocity_table(of))
+    if _known(of.table, _FORCE):
+        found.append(_numbers_table(of.table))
     for name, title in of.levels.items():
         found += [PageFigure.of(name, capital(title), _level(of, name)), _difference_table(of, name)]
     if {"stiffness", "filter"} & set(of.table):
