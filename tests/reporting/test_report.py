@@ -402,7 +402,7 @@ def test_numbers_of_several_contacts_are_of_all_of_them(real_runs):
     force, loss = force_answers(tree).numbers
     assert force.name == "forces of 2 contacts vary by, rms"
     assert force.value == engineering(np.sqrt(0.5 * (10.0**2 + 20.0**2) * np.mean(wave**2)), "N")
-    assert force.note.endswith("of its mean of 50.0 N; at most 80.0 N at contact 2")
+    assert force.note.endswith("of their mean of 50.0 N; at most 80.0 N at contact 2")
     assert (loss.value, loss.note[-12:]) == ("25.0 %", "at contact 2")
     for name in ("force_peak", "force_envelope", "force_bands", "force_psd"):
         assert (

@@ -218,6 +218,15 @@ def test_effects_are_differences_within_one_texture(table):
     assert effects(table, "force_level_a")["effect"].dims == ("variant",)
 
 
+def test_seeds_that_draw_nothing_say_nothing_of_chance(table, cache):
+    """Measured lines: all seeds roll over the same, and a record is as sure as one."""
+    one, three = (effects(table.isel(seed=places)) for places in ([0], [0, 0, 0]))
+    assert np.isnan(three["effect_error"]).all()
+    assert three.attrs["seeds"] == 1
+    np.testing.assert_allclose(three["level_deviation"], one["level_deviation"])
+    np.testing.assert_allclose(three["effect"], one["effect"], atol=1e-12)
+
+
 def test_soft_pads_free_the_rail_and_calm_the_sleepers(table):
     """D. J. Thompson, Railway Noise and Vibration (Elsevier, 2009); and slower is quieter."""
     found = effects(table)

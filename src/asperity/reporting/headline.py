@@ -158,9 +158,10 @@ def force_answers(tree: DataTree) -> Answers:
     mean, rms, _ = data.force_numbers(tree, main).values()
     rms *= bool(np.ptp(forces, axis=1).any())  # of what does not vary, the mean is rounded
     top = data.engineering(float(largest.max()), "N") + _at_contact(int(largest.argmax()), count)
-    share = (
-        f"{data.in_percent(rms / mean)} of its mean of {data.engineering(mean, 'N')}; " if mean > 0 else ""
-    )
+    whose = "its" if count == 1 else "their"
+    share = ""
+    if mean > 0:
+        share = f"{data.in_percent(rms / mean)} of {whose} mean of {data.engineering(mean, 'N')}; "
     varies = data.engineering(rms, "N")
     what = "contact force varies" if count == 1 else f"forces of {count} contacts vary"
     dynamic = HeadlineNumber(f"{what} by, rms", varies, f"{share}at most {top}")

@@ -144,24 +144,26 @@ def effects(table: xarray.Dataset, quantity: str = "") -> xarray.Dataset:
     base = held.sel({VARIANT: AS_IT_IS}, drop=True)
     change = held.transpose(VARIANT, ...).drop_sel({VARIANT: AS_IT_IS}) - base
     several = [SEED] if SEED in change.dims else []
+    seeds = table.sizes.get(SEED, 1)
+    if several and float((base.max(SEED) - base.min(SEED)).max()) == 0.0:
+        seeds = 1  # what is rolled over was measured: nothing was drawn, and others tell nothing of chance
     effect = change.mean(several)
     level = base.mean(several)
     found = {
         schema.EFFECT: effect,
-        schema.EFFECT_ERROR: student(change, CONFIDENCE)[0] if several else effect * np.nan,
+        schema.EFFECT_ERROR: student(change, CONFIDENCE)[0] if seeds > 1 else effect * np.nan,
         schema.LEFT_OUT: _left_out(table, effect),
     }
     told = xarray.Dataset(
         {entry.name: each.assign_attrs(_attributes(entry)) for entry, each in found.items()},
-        attrs={schema.EFFECT_LAW.name: law, schema.EFFECT_SEEDS.name: table.sizes.get(SEED, 1)},
+        attrs={schema.EFFECT_LAW.name: law, schema.EFFECT_SEEDS.name: seeds},
     )
     told[schema.EFFECT_LEVEL.name] = level.assign_attrs(_attributes(schema.EFFECT_LEVEL) | held.attrs)
     if held.name == usual == schema.RADIATED_POWER_LEVEL_A.name:
         by_chance = table[schema.RADIATED_POWER_DEVIATION.name].sel(
             {VARIANT: AS_IT_IS, "law": law}, drop=True
         )
-        count = by_chance.sizes[SEED] if several else 1
-        mean = ((by_chance**2).mean(several) / count) ** 0.5
+        mean = ((by_chance**2).mean(several) / seeds) ** 0.5
         told[schema.EFFECT_LEVEL_DEVIATION.name] = mean.assign_attrs(
             _attributes(schema.EFFECT_LEVEL_DEVIATION)
         )
