@@ -2,6 +2,7 @@
 
 import json
 import math
+import sys
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -24,6 +25,7 @@ from asperity.scenes.computed_bearing import bearing_rings, cage_slip, compute_b
 from asperity.scenes.figures.bearing import load_zone
 from asperity.schema import bearing as schema
 from asperity.schema import spectra
+from command_line import program
 from small_cases import BEARING
 
 D, PITCH, BALLS, TURNS = 7.94e-3, 39.04e-3, 9, 30.0
@@ -400,8 +402,27 @@ def test_a_law_that_is_registered_rolls_in_a_bearing_with_keys_of_its_own(tmp_pa
         laws.unregister("stiffer")
 
 
+KILLED_HALF_WAY = """
+import os, signal, sys
+import asperity
+from asperity.rolling import bearing, stepper
+from asperity.scenarios import raceway_laws
+from asperity.scenarios.prepared_bearing import prepare_bearing
+from asperity.scenes.computed_bearing import compute_bearing
+
+raceway_laws.CELLS, bearing.INSTANTS, stepper.SAVE_EVERY = (3, 4), 1, 0.0
+
+def progress(done, total, message):
+    if message == "rolling" and done >= 0.5 * total:
+        os.kill(os.getpid(), signal.SIGKILL)
+
+compute_bearing(prepare_bearing(asperity.read_case(sys.argv[1])), progress)
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="processes are ended by signals")
 @pytest.mark.filterwarnings("ignore::asperity.errors.PhysicsWarning")  # of few cells
-def test_direct_in_a_bearing_that_was_stopped_goes_on_to_the_last_bit(monkeypatch, tmp_path):
+def test_direct_in_a_bearing_that_was_killed_goes_on_to_the_last_bit(monkeypatch, tmp_path):
     """Balls with waves on their own: their surfaces, and what each contact started from, come back."""
     case = as_case(
         {"kind": "ball-bearing", "bearing": OF_THREE, "axial": "60 N", "speed": "600000 1/min",
@@ -413,24 +434,20 @@ def test_direct_in_a_bearing_that_was_stopped_goes_on_to_the_last_bit(monkeypatc
     prepared = prepare_bearing(case)
     steps = []
 
-    def rolling(stop):
-        def progress(done, total, message):
-            if message == "rolling":
-                steps.append(done)
-                if done >= stop:
-                    raise KeyboardInterrupt
-
-        return compute_bearing(prepared, progress).runs["direct"]
+    def rolled():
+        steps.clear()
+        told = lambda done, total, message: steps.append(done) if message == "rolling" else None  # noqa: E731
+        return compute_bearing(prepared, told).runs["direct"]
 
     monkeypatch.setenv("ASPERITY_CACHE", str(tmp_path / "whole"))
-    whole = rolling(math.inf)
-    monkeypatch.setenv("ASPERITY_CACHE", str(tmp_path / "stopped"))
-    with pytest.raises(KeyboardInterrupt):
-        rolling(0.5 * max(steps))
-    left = steps[-1]
-    steps.clear()
-    resumed = rolling(math.inf)
-    assert left < steps[0] <= left + 8 < max(steps)  # not from the start
+    whole = rolled()
+    last = max(steps)
+    case.save(tmp_path / "case.toml")
+    cache = str(tmp_path / "killed")
+    program(str(tmp_path / "case.toml"), code=-9, script=KILLED_HALF_WAY, ASPERITY_CACHE=cache)
+    monkeypatch.setenv("ASPERITY_CACHE", cache)
+    resumed = rolled()
+    assert 0.3 * last < steps[0] < last  # not from the start
     for name in ("inner_force", "outer_force", "ball_motion", "inner_motion", "acceleration"):
         np.testing.assert_array_equal(getattr(resumed, name), getattr(whole, name))
 
