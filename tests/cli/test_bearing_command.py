@@ -3,6 +3,7 @@
 import importlib
 import json
 import re
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -10,12 +11,15 @@ import pytest
 from scipy.io import wavfile
 
 import asperity
+from asperity.case.ball_bearing import BearingUnderLoad
 from asperity.case.cases import as_case
+from asperity.studies import running
 from command_line import call, words_of
 from faulty_signals import faulty_signal
 from small_cases import BEARING
 
 RATE = 12_000
+HERE = ThreadPoolExecutor(1)
 TIME = np.arange(2 * RATE) / RATE
 OWN = """
 balls = 9
@@ -305,3 +309,32 @@ def test_a_bearing_is_checked_run_reported_drawn_and_heard():
     rows = [row for row in Path("beside/comparison.csv").read_text().splitlines() if "band_velocity" in row]
     assert rows[0].startswith("velocity,band_velocity,hertz,50 to 300 Hz,m/s,")
     assert float(rows[0].split(",")[-1]) == pytest.approx(20.0 * np.log10(2.0))
+
+
+SMALL = {
+    "kind": "ball-bearing", "axial": "60 N", "speed": "18000 1/min", "duration": "20 ms", "settling": "5 ms",
+    "laws": ["linear"], "centrifugal": False,
+    "bearing": {
+        "balls": 3, "ball_diameter": "7.94 mm", "pitch_diameter": "39.04 mm", "contact_angle": "20 deg"
+    },
+    "inner_raceway": {"waves": [4], "amplitudes": ["20 nm"]},
+}  # fmt: skip
+
+
+def test_a_bearing_is_made_finer_and_asked_what_helps_by_command(monkeypatch):
+    """By a linear law half the waves are 6 dB less; the members are rolled in this process."""
+    half = {"half as wavy": {"inner_raceway": {"amplitudes": ["10 nm"]}}}
+    monkeypatch.setattr(BearingUnderLoad, "helping_changes", half)
+    monkeypatch.setattr("asperity.studies.effects.SEEDS", 1)
+    study = running.study
+    monkeypatch.setattr(running, "study", lambda plan, progress=None: study(plan, executor=HERE))
+    Path("bearing.toml").write_text(as_case(SMALL).to_toml())
+    said = call("run", "bearing.toml", "--what-helps", "--converge", "-o", "out", "--json", "--quiet").stdout
+    assert json.loads(said)["exit_code"] == 0
+    tree = asperity.open_result("out")
+    effect = tree["effects"].to_dataset()["effect"].sel(variant="half as wavy")
+    assert float(effect.sel(judged="300 to 1800 Hz")) == pytest.approx(20.0 * np.log10(0.5), abs=0.01)
+    assert {"time step", "run-in"} <= set(tree["convergence"].to_dataset()["setting"].values.tolist())
+    page = Path("out/report.html").read_text()
+    assert "What helps?" in page
+    assert "half as wavy" in page
