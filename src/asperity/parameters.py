@@ -14,6 +14,7 @@ import numpy as np
 from asperity.arguments import Array, NDArray, nearest, no_file, shown
 from asperity.errors import InputError
 from asperity.reference.materials import MATERIALS, Material
+from asperity.text_files import BACKSLASH
 from asperity.units import factor, quantity, written
 from asperity.written_numbers import count_of, rounded
 
@@ -47,10 +48,6 @@ LEAST, MOST = 1e-30, 1e30
 """Numbers in SI lie between these: nothing in mechanics is outside, and ten multiplied are finite."""
 
 EMPTY = "Add to it, or remove the key."
-BACKSLASH = (
-    "In double quotes a backslash changes the letter after it: write Windows paths in single quotes, as in "
-    r"file = 'C:\data\beam.x3p', or with / instead."
-)
 
 
 @dataclass(frozen=True)

@@ -23,6 +23,11 @@ _FORMULA = ("=", "+", "-", "@")
 """First characters of what spreadsheets take for a formula, and would compute or even run."""
 
 
+BACKSLASH = (
+    "In double quotes a backslash changes the letter after it: write Windows paths in single quotes, as in "
+    r"file = 'C:\data\beam.x3p', or with / instead."
+)
+"""What to do about a path whose letters a TOML file has changed."""
 LATIN_SHARE = 0.5
 """Least share of Latin characters in UTF-16 that bears no mark."""
 _BLOCK = 1 << 16

@@ -13,7 +13,6 @@ import numpy as np
 from asperity import text_files
 from asperity.case.form import described_value
 from asperity.errors import InputError
-from asperity.parameters import BACKSLASH
 
 LARGEST_CASE = 2**20  # bytes
 MOST_PARTS = 20
@@ -49,7 +48,7 @@ def read_toml(text: str, what: str, source: str | os.PathLike[str]) -> dict[str,
         remedy = 'Strings and quantities stand in double quotes: speed = "1 m/s".'
         place = re.search(r"\(at line (\d+), column \d+\)$", str(error))
         if place and "\\" in text.split("\n")[int(place[1]) - 1]:
-            remedy = BACKSLASH
+            remedy = text_files.BACKSLASH
         raise InputError(str(source), f"no TOML ({error})", allowed, remedy) from None
 
 
