@@ -252,10 +252,10 @@ test_wrong_paths_and_levels = refusals(
 SAMPLES = np.arange(-300, 300, dtype="<i2")
 
 
-def wav(samples=SAMPLES, **fields):
-    """A WAV file of 12 kHz, whose head may tell other sizes of RIFF and data."""
+def wav(samples=SAMPLES, form=1, **fields):
+    """A WAV file of 12 kHz, whose head may tell other sizes of RIFF and data, and another form than PCM."""
     sizes = {"riff": 36 + samples.nbytes, "data": samples.nbytes} | fields
-    kind = struct.pack("<HHIIHH", 1, 1, 12_000, 24_000, 2, 16)
+    kind = struct.pack("<HHIIHH", form, 1, 12_000, 24_000, 2, 16)
     chunks = b"fmt " + struct.pack("<I", 16) + kind + b"data" + struct.pack("<I", sizes["data"])
     return b"RIFF" + struct.pack("<I", sizes["riff"]) + b"WAVE" + chunks + samples.tobytes()
 
@@ -310,6 +310,13 @@ test_signals_that_are_none = refusals(
         "bytes that are no text, and no signal; allowed: .npz, .npy, .wav, .mat or",
     ),
     ("a.wav", wav(data=2**32 - 1, riff=2**32 - 1), "4294967295 bytes of samples, by its head, in 1200"),
+    (
+        "a.wav",
+        wav(form=2),
+        r"a kind of WAV that is not read \(.*ADPCM\); allowed: whole numbers .* PCM of 16 bits",
+    ),
+    ("a.wav", wav(form=3), r"a kind of WAV that is not read \(.*16-bit floating-point data\)"),
+    ("a.npy", np.float64(3.0), "a single number; allowed: a signal"),
     ("a.wav", wav()[:-7], r"1200 bytes of samples, by its head, in 1193; .*truncated"),
     (
         "a.npy",

@@ -132,6 +132,9 @@ SAID = [
     ("0 1 2\n10 11 12\n20 21 22\n", HINTS, "3 points that would need a grid of 3 x 3"),
     ("\n".join(" ".join(map(str, p)) for p in SCATTERED), HINTS, r"regular grid|not uniform"),
     ("Height (kg)\n1\n2\n", {"pixel": "1 um"}, "unit in the header: received 'kg'"),
+    ("z (dB(A))\n1\n2\n", {"pixel": "1 um"}, "unit in the header: received 'dB'"),  # no ångström
+    ("Level dB [A]\n1\n2\n", {"pixel": "1 um"}, "unit in the header: received 'dB'"),
+    ("x (mm);L dB(A)\n1;2\n2;3\n", {}, "received 'dB'"),
     ("1 2 3 4\n1 inf 2 3\n", HINTS, "infinite values"),
     (b"1 2\x00\x01", HINTS, "bytes that are no text"),
     ("1.5\n", HINTS, "at least two along each axis"),

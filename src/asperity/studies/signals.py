@@ -73,6 +73,8 @@ MOST_PEAK = 1e60
 MOST_TERMS = 10_000
 """Largest number in the ratio of two sampling rates, which is taken as one of whole numbers."""
 LARGEST_TEXT = 64 * 2**20  # bytes
+UNREAD_WAV = ("Unknown wave file format", "Unsupported bit depth")
+"""What SciPy says of an intact file that it does not read."""
 
 
 @dataclass(frozen=True)
@@ -347,6 +349,7 @@ def _recorded(file: Path, array: str | None) -> tuple[Array, list[str], float | 
             values = values.ravel() if 1 in values.shape else values
         else:
             values, titles = _of_text(file)
+        require(values.ndim, file.name, "a single number", "a signal, or columns of them")
         if (told := rates.rate_in(beside, len(values), file.name)) is not None:
             rate = told[0]
             teller = f"'{told[1]}' says"
@@ -389,8 +392,16 @@ def _of_wav(file: Path) -> tuple[float, Any]:
     from scipy.io import wavfile
 
     _check_pieces(file)
-    with warnings.catch_warnings(action="ignore"):  # of pieces that it does not know
-        rate, values = wavfile.read(file)
+    try:
+        with warnings.catch_warnings(action="ignore"):  # of pieces that it does not know
+            rate, values = wavfile.read(file)
+    except ValueError as error:
+        said = str(error).partition(". ")[0].rstrip(".")
+        if not said.startswith(UNREAD_WAV):
+            raise
+        allowed = "whole numbers (PCM), or floats of 32 and 64 bits"
+        remedy = "Save it as PCM of 16 bits."
+        raise InputError(file.name, f"a kind of WAV that is not read ({said})", allowed, remedy) from None
     if values.dtype.kind == "u":
         values = values.astype(float) - 128.0
         return float(rate), values / 128.0

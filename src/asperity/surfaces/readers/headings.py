@@ -16,6 +16,8 @@ from asperity.units import factor, quantity
 _NUMBER = r"[-+]?\d++(?:[.,]\d*+)?(?:[eE][-+]?\d++)?"
 # For lines in which one blank stands for all white space: whatever the line, they need time like its length.
 _BRACKET = re.compile(r"[\[(] ?([^\s\[\]()\d]{1,20}) ?[\])]")
+_WEIGHTED = re.compile(r"[(\[]?\bdB ?[(\[]? ?[A-Z] ?[)\]]+", re.IGNORECASE)
+"""Decibels of a weighting, as in dB(A) or [dB (C)]."""
 _SECTION = re.compile(r"\[ ?[^\s\[\]]{4,} ?\]")
 """``[Data]``, the heading of a section."""
 _UNIT_LINE = re.compile(r"(.*?)\bunits?\b ?[:=]? ?[\[(]?([^\s\[\]();,]{1,20})", re.IGNORECASE)
@@ -144,9 +146,14 @@ def _units_alone(cells: list[str]) -> list[str]:
     return bare if all(known) and any(_LENGTH.fullmatch(unit) for unit in bare) else []
 
 
+def _brackets(text: str) -> list[str]:
+    """What stands in brackets, the A of dB(A) with its decibels: it is no ångström."""
+    return _BRACKET.findall(_WEIGHTED.sub("[dB]", text))
+
+
 def _unit_of(title: str) -> str:
     """Unit that a title names; empty without one."""
-    if brackets := _BRACKET.findall(title):
+    if brackets := _brackets(title):
         return str(brackets[-1])
     if any(mark.isdigit() for mark in title):
         return ""
@@ -275,7 +282,7 @@ def _column_units(titles: list[Title]) -> dict[str, float]:
 def _unit_of_one(lines: list[str], titles: list[Title]) -> dict[str, float]:
     """Unit of heights that one title names, of a single column or of all of a matrix."""
     for text in reversed([] if titles else lines):
-        units = _BRACKET.findall(text)
+        units = _brackets(text)
         if units and _SECTION.fullmatch(text) and not _LENGTH.fullmatch(units[0]):
             continue
         if len(units) == 1 and not _is_lateral(text):
