@@ -257,6 +257,27 @@ def test_a_run_is_watched_heard_compared_and_taken_away(tab, tmp_path):
     tab.wait_for_selector("#comparison:not([hidden])")
 
 
+def test_a_bearing_is_run_and_heard(tab, tmp_path):
+    three = {
+        "balls": 3, "ball_diameter": "7.94 mm", "pitch_diameter": "39.04 mm", "contact_angle": "20 deg"
+    }  # fmt: skip
+    waves = {"waves": [4], "amplitudes": ["20 nm"]}
+    case = {
+        "kind": "ball-bearing", "axial": "60 N", "speed": "18000 1/min", "duration": "20 ms",
+        "settling": "1 ms", "laws": ["linear"], "bearing": three, "inner_raceway": waves,
+    }  # fmt: skip
+    fill(tab, tmp_path, case)
+    roll(tab, "three balls")
+    becomes(tab, "three balls", "done")
+    tab.wait_for_selector("#load_zone.ready .plot canvas")
+    tab.locator("#player").evaluate("it => { it.preload = 'metadata'; }")
+    tab.wait_for_function("() => document.getElementById('player').duration > 0.01")
+    with tab.expect_download() as taken:
+        tab.click("text=Download run.nc")
+    heard = asperity.open_result(taken.value.path())["bearing/band_velocity"].values
+    assert heard[0, 0, 1] > 1e-6
+
+
 def test_back_closes_a_run(tab, tmp_path):
     have_a_run(tab, tmp_path)
     tab.locator("#run-list li[data-state=done] a.name").first.click()
