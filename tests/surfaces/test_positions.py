@@ -203,3 +203,11 @@ def test_times_that_give_no_rate(tmp_path, text, rate, column, message):
     file.write_text(text)
     with pytest.raises(InputError, match=message):
         read_signal(file, rate, column=column)
+
+
+@pytest.mark.parametrize("step", [0.0015, 0.0045, 0.0063])
+def test_points_finer_than_their_last_digit_stand_one_after_the_other(step):
+    """Several share each printed coordinate: as many places as points, not as digits."""
+    index, spacing = positions.places(np.round(np.arange(60) * step, 2), "x")
+    assert index.tolist() == list(range(60))
+    assert spacing == pytest.approx(step, abs=0.01 / 59)

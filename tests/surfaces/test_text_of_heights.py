@@ -5,6 +5,7 @@ import pytest
 
 from asperity import HeightMap, read_surface
 from asperity.errors import InputError, MissingPointsWarning
+from asperity.surfaces.readers.headings import Title, columns_of_heights
 from refusals import refusals
 
 # 3 lines along x, 4 points across, in um
@@ -304,3 +305,16 @@ def test_text_that_is_intact_is_never_called_damaged(read, text):
         with pytest.raises((InputError, MissingPointsWarning)) as told:
             read(text, encoding)
         assert "damaged" not in str(told.value)
+
+
+@pytest.mark.parametrize(("numbers", "kept"), [
+    ([1.0, 2.0, 3.0, 4.0], ["a", "b"]),
+    ([0.0, 1.0, 2.0, 3.0], ["a", "b"]),
+    ([3.0, 1.0, 7.0, 9.0], ["i", "a", "b"]),
+])  # fmt: skip
+def test_a_column_titled_as_a_number_is_left_out_where_it_counts_on(numbers, kept):
+    """The letter i may name points, or a channel."""
+    table = np.column_stack([numbers, np.zeros((4, 2))])
+    found, titles = columns_of_heights(table, [Title(name, "") for name in "iab"])
+    assert [title.name for title in titles] == kept
+    assert found.shape == (4, len(kept))
