@@ -343,7 +343,10 @@ _CHANCE = "standard deviation of the level by the chance of its records"
 EFFECT_LEVEL_DEVIATION = _changed("level_deviation(radiator)", "dB", _CHANCE)
 _HALF = "half the 95 % confidence interval of the effect, by its scatter over the seeds"
 EFFECT_ERROR = _effects(
-    "effect_error(variant, radiator)", "dB", _HALF, missing="it has fewer than two seeds, or no effect"
+    "effect_error(variant, radiator)",
+    "dB",
+    _HALF,
+    missing="it has no effect, or fewer than two seeds that draw anything",
 )
 LEFT_OUT = _effects("left_out(variant)", "1", "why the change was left out; empty where it was not")
 EFFECT_LAW = Attribute("effects", "law", "text", "contact law", EFFECT.condition)
