@@ -28,7 +28,7 @@ CASE = {
     "laws": ["linear"], "duration": "0.1 s", "settling": "10 ms", "centrifugal": False,
     "inner_raceway": {"waves": [5, 10, 13], "amplitudes": ["2 nm", "3 nm", "5 nm"]},
 }  # fmt: skip
-LINEAR = {"law": "linear", "verify": "linear", "record": "0.1 s"}
+LINEAR = {"law": "linear", "verify": "linear", "record": "0.2 s"}
 still = lambda *_: None  # noqa: E731
 
 

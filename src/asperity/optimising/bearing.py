@@ -259,7 +259,7 @@ class OptimisedBearing:
         words.append(
             f"Price {rounded(self.price)}: {lowered} of {count_of(len(self.bands), 'band')} lowered, "
             f"{raised} raised, by {signed(self.changes.min())} to {signed(self.changes.max())} dB. "
-            f"Trials recorded {rounded(self.aim.record)} s each."
+            f"Trials recorded {rounded(min(self.aim.record, self.case.duration))} s each."
         )
         if not self.settled:
             words.append("The search did not settle: the best that was met is shown.")
