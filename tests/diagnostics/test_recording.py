@@ -214,6 +214,7 @@ def test_a_recording_is_looked_at_beside_no_copy_of_itself():
         assert tracemalloc.get_traced_memory()[1] < 1.2 * signal.nbytes
     finally:
         tracemalloc.stop()
+    assert recording.clipped == 0.0  # as many at the ends as beside them
 
 
 def test_what_is_taken_in_blocks_is_what_all_at_once_is():

@@ -16,7 +16,7 @@ from asperity.reference.law_accuracy import Place, law_map, mapped_points
 from asperity.running import prepare_case
 from asperity.scenarios import law_choice
 from asperity.scenarios.geometry import geometry_of
-from asperity.scenarios.law_choice import ExpectedError, choose, expected_error, place_of
+from asperity.scenarios.law_choice import ExpectedError, LawChoice, choose, expected_error, place_of
 from asperity.scenarios.preparing import Work
 from asperity.scenarios.scene import scene_of
 from asperity.scenes.validity import doubted_by_area
@@ -221,3 +221,9 @@ def test_why_nothing_is_said_is_said_where_the_map_knows_nothing(case):
     if not smooth:
         assert told["law to take"].startswith("not told by the map of law errors: it holds")
     assert law_choice.UNMAPPED == WheelOnRail(surface={"joint_depth": "1 mm"}).laws[0] == "direct"
+
+
+@pytest.mark.parametrize(("wavenumber", "off"), [(0.9, True), (1.0, False), (3.0, False), (3.1, True)])
+def test_waves_longer_and_shorter_than_any_on_the_map_are_off_it(wavenumber, off):
+    place = Place(0.1, 1.0, 1.0, 0.1, 0.1, highest_wavenumber=wavenumber)
+    assert LawChoice(place, {}, 0.0, law_map().points[0], (1.0, 3.0)).off_map == off

@@ -332,3 +332,13 @@ test_what_is_no_ring_is_refused = refusals(
         "modes around a circle.*apart.*Repeat the first row",
     ),
 )
+
+
+def test_a_ball_is_struck_more_slowly_where_its_cage_lags():
+    """D/d (1 − (d cos α/D)²) times a turn of the shaft in pure rolling, from the least angle on, less 1 %."""
+    bearing = BallBearing.named("6205")
+    ratio = bearing.ball_diameter / bearing.pitch_diameter
+    tone = bearing.tones()["ball"]
+    assert tone.order == pytest.approx((1.0 - ratio**2) / ratio, rel=1e-12)
+    assert tone.lowest == pytest.approx(0.99 * tone.order, rel=1e-12)
+    assert tone.highest == pytest.approx((1.0 - (ratio * np.cos(np.radians(15.2))) ** 2) / ratio, rel=1e-3)
