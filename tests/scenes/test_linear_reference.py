@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 from asperity import Track, Wheel
 from asperity.errors import LossFactorWarning, warn_of_findings
 from asperity.scenarios.scene import force_transfer, mean_square_transfer
-from asperity.scenes.track import findings_of_losses, linear_reference, loss_factor_error
+from asperity.scenes.track import _coupled, findings_of_losses, linear_reference, loss_factor_error
 from asperity.spectra import nominal_frequency, psd
 from asperity.structures.moving_kernel import moving_kernel
 
@@ -109,3 +109,16 @@ def test_a_large_error_is_warned_of_with_a_remedy_and_a_small_one_is_not(error):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         warn_of_findings(findings_of_losses(lost(Track.named("nordborg-loss-factor"))))
+
+
+def test_contacts_that_feel_each_other_add_what_all_pass_with_its_delay_and_their_own_by_power():
+    """Of two wheels 2 m apart, each with T of its own and C of the other's: |T + C e^{iωd/v}|², T² + C²."""
+    own, other, ahead, speed = 3.0, 1.0 - 2.0j, 2.0, 40.0
+    lines = np.array([5.0, 12.0])
+    transfer = np.array([[own, other], [other, own]])[..., None] * np.ones(2)
+    scene = SimpleNamespace(offsets=(1.0, 1.0 + ahead), coupled_transfer=lambda *_: transfer)
+    along, each = _coupled(scene, 1e9, speed, np.array([0.1, 0.3, 0.5]), lines)
+    turn = np.exp(2j * np.pi * lines * ahead / speed)
+    expected = 0.5 * (np.abs(own + other * turn) ** 2 + np.abs(other + own * turn) ** 2)
+    assert along == pytest.approx(expected, rel=1e-12)
+    assert each == pytest.approx(np.full(2, own**2 + abs(other) ** 2), rel=1e-12)
