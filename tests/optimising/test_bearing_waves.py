@@ -115,6 +115,9 @@ def test_what_a_band_adds_is_told_by_accelerations_not_by_energies():
     heard = [bearing._velocities(case, each)[0] for each in (none, first, first - none)]
     assert heard[0] > 0.0
     assert abs(np.sqrt(abs(heard[1] ** 2 - heard[0] ** 2)) / heard[2] - 1.0) > 0.05
+    found = asperity.optimise(case, **LINEAR, low_band="1 m/s", fewest_waves=3, reach="1 dB")
+    assert [found.floor[0], found.alone[0, 0]] == pytest.approx([heard[0], heard[2]], rel=1e-9)
+    assert found.changes == pytest.approx([1.0, 1.0])  # as rough as it may be
 
 
 def test_several_limits_are_kept_at_the_least_price():
