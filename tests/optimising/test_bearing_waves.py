@@ -44,6 +44,7 @@ def test_bands_of_one_price_share_a_limit_alike(found):
     """Velocities are in proportion to waves: one alone falls as its limit, two take half its square each."""
     answer, limits = found
     assert [band.orders for band in answer.bands] == [(5,), (10,), (13,)]
+    assert [band.rms for band in answer.bands] == pytest.approx(np.array([2e-9, 3e-9, 5e-9]) / np.sqrt(2.0))
     low, medium = limits.values()
     velocity = answer.alone * 10.0 ** (answer.changes / 20.0)[:, None]
     assert velocity[0, 0] == pytest.approx(low, rel=2e-3)
@@ -118,6 +119,19 @@ def test_what_a_band_adds_is_told_by_accelerations_not_by_energies():
     found = asperity.optimise(case, **LINEAR, low_band="1 m/s", fewest_waves=3, reach="1 dB")
     assert [found.floor[0], found.alone[0, 0]] == pytest.approx([heard[0], heard[2]], rel=1e-9)
     assert found.changes == pytest.approx([1.0, 1.0])  # as rough as it may be
+
+
+def test_what_stays_takes_its_part_of_a_limit():
+    """Two bands of one price share what is left of 5 µm/s beside 4: half of 3² each."""
+    stays = np.array([4e-6, 0.0, 0.0])
+    alone = np.array([[3e-6, 0.0, 0.0], [2e-6, 0.0, 0.0]])
+    bands = [bearing.PartBand("balls", (order,), 1e-7) for order in (3, 4)]
+    trials, settled = bearing._search(
+        lambda energies: np.sqrt(stays**2 + energies @ alone**2),
+        alone, stays, bands, bearing.BearingAim(low_band="5 um/s"),
+    )  # fmt: skip
+    assert settled
+    assert trials[-1].energies == pytest.approx([4.5 / 9.0, 4.5 / 4.0], rel=1e-3)
 
 
 def test_several_limits_are_kept_at_the_least_price():
