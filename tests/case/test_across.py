@@ -300,6 +300,10 @@ def test_sections_that_are_hardly_meant_are_doubted():
     assert "Is it the diameter?" in told_of(chosen(wheel_of(), rail_of(), radius="0.66 m"))
     with pytest.raises(InputError, match=r"falls by 1:7\.6, where treads fall by 1:40 to 1:15.*diameters"):
         told_of(chosen(wheel_of(by=2.0, **flat), rail_of()))
+    levelled = told_of(chosen(wheel_of(by=2.0, **flat), rail_of(), None))
+    assert "do they hold radii, no diameters" in levelled
+    with pytest.raises(InputError, match=r"an edge of what is known.* Do both hold radii, no diameters\?"):
+        told_of(chosen(wheel_of(by=2.0, kept=(-22.0, 22.0)), rail_of(), None))
     for wheel in (wheel_of(), wheel_of(**flat)):
         assert not told_of(chosen(wheel, rail_of()))
 

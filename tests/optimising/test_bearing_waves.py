@@ -132,6 +132,9 @@ def test_what_stays_takes_its_part_of_a_limit():
     )  # fmt: skip
     assert settled
     assert trials[-1].energies == pytest.approx([4.5 / 9.0, 4.5 / 4.0], rel=1e-3)
+    bearing._refuse_reached(1.001 * stays + 1e-9, stays)
+    with pytest.raises(InputError, match="more than 4 um/s, which the bearing has without"):
+        bearing._refuse_reached(0.999 * stays + 1e-9, stays)
 
 
 def test_several_limits_are_kept_at_the_least_price():

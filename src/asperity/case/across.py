@@ -277,7 +277,10 @@ class Meeting:
         inside = max(min(found - low, high - found), 0.0)
         received = f"sections that meet {1e3 * inside:.1f} mm from an edge of what is known of them"
         allowed = f"a contact at least {rounded(1e3 * clear)} mm inside, half of contact.window"
-        remedy = "Measure more of them, shift them less, or shrink contact.window."
+        remedy = (
+            "Do both hold radii, no diameters? Then measure more of them, shift them less, or shrink "
+            "contact.window."
+        )
         if tread.flanged and not head.measured:
             remedy = (
                 "A head that is a circle meets the flange: give the rail's section, or cut the flange off."

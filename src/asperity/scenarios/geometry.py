@@ -159,6 +159,13 @@ def geometry_of(case: scene.Case) -> Geometry:
     return shape.within_window()
 
 
+SECTIONS = (
+    "Look at the sections first: do they hold radii, no diameters, and lie as on the rail "
+    "(sideways.rail_inclination lays them so)? Else lower the load"
+)
+"""What makes a contact smaller that sections as they were measured make too large."""
+
+
 def _check_half_space(case: scene.Case, hertz: Hertz, load: float) -> None:
     """Hold the contact under the load, and in the highest state given, to the half-space."""
     body = case.rolling
@@ -168,10 +175,13 @@ def _check_half_space(case: scene.Case, hertz: Hertz, load: float) -> None:
         asked.append((top[-1], f"an approach of {rounded(top[-1] * 1e6)} µm"))
     bent = abs(body.raceway_along)
     smallest = min(body.radius, body.across, case.rolled_over.radius_across, bent, hertz.radius_y)
+    measured = body.profile is not None or case.rolled_over.profile is not None or case.meeting is not None
+    lighter = SECTIONS if measured else "Lower the load"
     for approach, cause in asked:
         along, across = axes = hertz.semi_axes(approach)
         if body.groove_radius is None:
-            check_half_space((along, 0.0) if along >= across else (0.0, across), smallest, cause=cause)
+            longest = (along, 0.0) if along >= across else (0.0, across)
+            check_half_space(longest, smallest, cause=cause, lighter=lighter)
         else:
             check_half_space(
                 axes, body.across, groove_radius=body.groove_radius, raceway_radius=body.raceway_along,
