@@ -55,18 +55,20 @@ class Spread:
     quantile: float
 
 
-def spread_of(square: float, freedom: int, *, believed: bool) -> Spread:
+def spread_of(square: float, freedom: int, *, believed: bool, read: bool = False) -> Spread:
     """Scatter of data about a fit that leaves a sum of squares, with so many degrees of freedom.
 
     Uncertainties that are believed are those of the data; else what is left tells them, and intervals are
-    those of Student.
+    those of Student. Read from a few repeats they are uncertain themselves, and what is left makes them
+    larger, not smaller.
     """
     from scipy.stats import norm, t
 
     tail = 0.5 * (1.0 + CONFIDENCE)
     if believed:
         return Spread(1.0, float(norm.ppf(tail)))
-    return Spread(max(float(np.sqrt(square / freedom)), LEAST_SCALE), float(t.ppf(tail, freedom)))
+    least = 1.0 if read else LEAST_SCALE
+    return Spread(max(float(np.sqrt(square / freedom)), least), float(t.ppf(tail, freedom)))
 
 
 def left_out(left: Array, uncertainty: Array, freedom: int) -> float:

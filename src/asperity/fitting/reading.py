@@ -211,7 +211,7 @@ def combined(found: Sequence[Measured]) -> list[Measured]:
     """Repeated measurements of one quantity under the same conditions as their mean, with its uncertainty.
 
     Of values with decades the mean is that of their logarithms. Its standard deviation is that of the values
-    about it over the root of their number, taken together over three neighbouring places of the axis.
+    about it over the root of their number, taken together over three to seven places of the axis.
     """
 
     def key(each: Measured) -> str:
@@ -259,20 +259,32 @@ LEAST_SCATTER = 0.2
 """Of repeated measurements, dB: levels are read to a tenth."""
 
 
+FREEDOM = 7
+"""Degrees of freedom of a standard deviation that is read from repeats, where neighbours have them."""
+NEIGHBOURS = 3
+"""Places on either side that are taken together at most."""
+
+
 def _pooled(square: Array, times: NDArray[np.int_]) -> Array | None:
-    """Standard deviation at each place (n,), of squares over it and its neighbours; None without repeats."""
+    """Standard deviation at each place (n,), of squares over it and its neighbours; None without repeats.
+
+    As few neighbours as have `FREEDOM` together: of fewer it is too uncertain to weigh what was measured.
+    """
     freedom = np.maximum(times - 1, 0).astype(float)
     if not freedom.any():
         return None
-    near, known = (_with_neighbours(each) for each in (square, freedom))
+    near, known = square, freedom
+    for reach in range(1, NEIGHBOURS + 1):
+        wider = known < FREEDOM if reach > 1 else np.full(len(known), True)
+        near = np.where(wider, _with_neighbours(square, reach), near)
+        known = np.where(wider, _with_neighbours(freedom, reach), known)
     whole = square.sum() / freedom.sum()
     return np.maximum(np.sqrt(np.where(known > 0.0, near / np.maximum(known, 1.0), whole)), LEAST_SCATTER)
 
 
-def _with_neighbours(values: Array) -> Array:
-    """Sums of each value (n,) and those beside it."""
-    padded = np.pad(values, 1)
-    return np.asarray(padded[:-2] + padded[1:-1] + padded[2:])
+def _with_neighbours(values: Array, reach: int) -> Array:
+    """Sums of each value (n,) and so many on either side."""
+    return np.convolve(values, np.ones(2 * reach + 1))[reach : reach + len(values)]
 
 
 def beside(case: AnyCase) -> list[Measured]:

@@ -311,9 +311,9 @@ def _searched(problem: Problem, starts: Sequence[Array], progress: Progress) -> 
 
 def _spread(problem: Problem, best: Optimum, free: int) -> determined.Spread:
     """Scatter of the data about the best values, of which so many are free."""
-    return determined.spread_of(
-        best.square, problem.count - free, believed=problem.stated and not problem.beyond
-    )
+    read = problem.stated and any(each.records > 1 for each in problem.measured)
+    believed = problem.stated and not problem.beyond and not read
+    return determined.spread_of(best.square, problem.count - free, believed=believed, read=read)
 
 
 def _descent(problem: Problem, start: Array, most: int) -> Optimum:
