@@ -101,6 +101,14 @@ def test_a_value_known_to_a_factor_of_three_is_determined():
         assert (open_direction(slopes, spread) is not None) == is_open
 
 
+def test_scatter_read_from_repeats_widens_intervals_and_never_narrows_them():
+    """Student's 2.228 of ten degrees of freedom; without repeats what is left narrows them, too."""
+    for square, repeated, alone in ((2.5, 1.0, 0.5), (40.0, 2.0, 2.0)):
+        read = spread_of(square, 10, believed=False, read=True)
+        assert (read.scale, read.quantile) == (repeated, pytest.approx(2.228139, abs=1e-6))
+        assert spread_of(square, 10, believed=False).scale == pytest.approx(alone)
+
+
 def test_what_data_never_feel_is_left_alone(track):
     base = track.with_(**{"track.rail_loss_factor": 0.01})
     data = mobility(base.with_(**TRUE), FREQUENCY)

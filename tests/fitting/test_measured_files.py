@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from asperity.errors import InputError
+from asperity.fitting import reading
 from asperity.fitting.observable import Measured
 from asperity.fitting.reading import combined, read_measured, read_where
 from asperity.fitting.running import measured_for
@@ -37,13 +38,21 @@ def test_a_line_is_a_measurement_and_lines_alike_are_one(track, file):
     np.testing.assert_allclose(first.values, [2.0, 5.0, 6.0, 7.0])  # geometric means
     assert (first.records, second.records) == (2, 1)
     assert first.conditions == {"speed": pytest.approx(120 / 3.6)}
-    # 10 lg 4 apart in one of three bands measured twice, taken together with its neighbours, over √2
+    # 10 lg 4 apart in one of three bands measured twice, all taken together: over √2, of a mean of two
     of_one = 10.0 * np.log10(4.0) / np.sqrt(2.0)
-    expected = np.array([of_one / np.sqrt(2.0), of_one / np.sqrt(2.0), 0.2 * np.sqrt(2.0), 0.2]) / np.sqrt(
-        2.0
-    )
+    expected = of_one / np.sqrt(3.0) / np.sqrt([2.0, 2.0, 1.0, 2.0])
     np.testing.assert_allclose(first.uncertainty, expected)
     assert second.uncertainty is None
+
+
+def test_scatter_is_taken_over_as_few_neighbours_as_tell_it():
+    """Of many repeats over one on either side, of two over three; both as the squares over their freedom."""
+    square = np.arange(1.0, 10.0) ** 2
+    often = reading._pooled(square, np.full(9, 8))
+    np.testing.assert_allclose(often[1:-1] ** 2, (square[:-2] + square[1:-1] + square[2:]) / 21.0)
+    twice = reading._pooled(square, np.full(9, 2))
+    np.testing.assert_allclose(twice[4] ** 2, square[1:8].sum() / 7.0)
+    np.testing.assert_allclose(twice[0] ** 2, square[:4].sum() / 4.0)
 
 
 def test_columns_choose_lines(track, file):
