@@ -148,6 +148,10 @@ def test_a_case_is_varied_in_the_units_that_were_typed_with_a_figure_for_each_ke
     ]  # of one seed there is nothing to draw
     assert '<td class="number">3.6</td>' in page  # without a script its numbers are read
     assert not (out / "study_mean.csv").exists()
+    call("study", "small.toml", "--vary", "ball.load = 5 N", "-o", "one", "--workers", "1")
+    alone = Path("one/study.html").read_text(encoding="utf-8")
+    assert "1 value of ball.load" in alone
+    assert 'id="numbers"' in alone  # where there is nothing to draw there are numbers
 
 
 def test_columns_and_figures_are_those_that_are_asked_for(out):

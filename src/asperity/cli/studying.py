@@ -33,6 +33,7 @@ from asperity.studies.signals import SignalSet
 from asperity.studies.words import MISSING, table_in_words
 from asperity.terminal import line_width, remark, say, say_files, say_table
 from asperity.text_files import write_csv
+from asperity.written_numbers import count_of
 
 RESULTS = "study.nc"
 TABLE = "study.csv"
@@ -196,7 +197,7 @@ def _write(
         told = _by_place(table, effect)
         blocks: list[page.Block] = [*_blocks(told)]
         blocks += _figures(mean, scatter, band, asked or tables.USUAL_IN_FIGURES)
-        if blocks and not (told and _effects_say_all(table)):
+        if table["completed"].any() and not (told and _effects_say_all(table)):
             blocks.append(_table(mean, asked or tables.USUAL))
         if blocks:
             names["page"] = PAGE
@@ -213,7 +214,8 @@ def _write(
 
 def _summary(table: xarray.Dataset, mean: xarray.Dataset) -> str:
     """Say what was swept, how much of it was computed, and between what and what its first level lies."""
-    swept = " × ".join(f"{table.sizes[name]} values of {name}" for name in json.loads(table.attrs["sweep"]))
+    values = {name: count_of(table.sizes[name], "value") for name in json.loads(table.attrs["sweep"])}
+    swept = " × ".join(f"{count} of {name}" for name, count in values.items())
     done = int(table["completed"].sum())
     count = table["completed"].size
     told = swept if done == count else f"{swept}; {done} of {count} members completed"
