@@ -71,7 +71,6 @@ CASES = {
         "wheel": {"section": "rigid"},
         "contact": {"spacing": "1 mm", "samples": 2},
         "numerics": {"highest_frequency": "2 kHz"},
-        "sideways": {"friction": 0.3},
         "creep": {"angle_of_attack": "8 mrad", "kinetic": 0.5, "falling_velocity": "1 m/s"},
     },
 }
