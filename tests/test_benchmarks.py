@@ -47,7 +47,11 @@ def test_a_run_is_told_apart_by_its_pieces():
 
 
 def test_cases_of_the_guard_are_cases():
-    assert {as_case(case).kind for case in CASES.values()} == {"ball-on-beam", "wheel-on-rail", "ball-bearing"}
+    assert {as_case(case).kind for case in CASES.values()} == {
+        "ball-on-beam",
+        "wheel-on-rail",
+        "ball-bearing",
+    }
 
 
 def written(path, force=(1.0, 2.0, np.nan), name="contact_force", dim="time", note="of one law", **attrs):
