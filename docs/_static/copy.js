@@ -2,6 +2,7 @@
 document.addEventListener("DOMContentLoaded", () => {
   if (!navigator.clipboard) return;
   for (const block of document.querySelectorAll(".bd-article div.highlight")) {
+    if (block.closest(".cell_output")) continue; // what came out is no code
     const button = document.createElement("button");
     button.type = "button";
     button.className = "copy";
