@@ -148,6 +148,18 @@ def test_pieces_are_as_long_as_the_shortest_that_is_half_of_the_longest():
     assert [each.size for each in SignalPieces.of(stretches[:1], 1_000.0)] == [1_000]
 
 
+def test_what_recurs_seldom_is_limited_to_what_recurs_once_in_two_turns():
+    """Twenty turns: ten samples of 5 are reached, one of 100 is a click."""
+    values = np.tile([1.0, -1.0], 500)
+    values[50::100] = 5.0
+    values[3] = 100.0
+    values -= values.mean()
+    (piece,) = SignalPieces.of([values], 1e9, rate=1_000.0, speed=20.0)
+    tenth = np.sort(np.abs(values))[-10]
+    assert tenth > 4.0
+    np.testing.assert_allclose(piece, np.clip(values, -tenth, tenth), atol=1e-12)
+
+
 @pytest.mark.parametrize("size", [262_147, 999_983, 1_048_576])
 def test_long_pieces_have_lengths_that_are_quick_to_transform(size):
     """262 147 and 999 983 are primes, which take three times as long; short pieces stay whole."""

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,7 +17,7 @@ from asperity.reference.materials import MATERIALS
 from asperity.scenarios.preparing import prepare
 from asperity.scenes import schema
 from asperity.scenes.compute import compute
-from asperity.scenes.creep import creep_group, friction_of, rough_strips, smooth_with_friction
+from asperity.scenes.creep import _wear, creep_group, friction_of, rough_strips, smooth_with_friction
 from asperity.scenes.figures.sideways import CREEP, creep_answers, friction_table
 from asperity.scenes.result import computed_result
 from asperity.schema import tree
@@ -251,6 +252,14 @@ def test_spin_moves_the_rim_of_a_contact_no_faster_than_creepages_may():
         kind(**keys | {"creep": {"spin": 0.99 * rim}})
         with pytest.raises(CaseError, match=r"a creepage of 0\.1 at the contact.s rim"):
             kind(**keys | {"creep": {"spin": 1.01 * rim}})
+
+
+def test_a_depth_of_wear_is_over_the_width_across():
+    """3 W of each of two contacts at 2 m/s and 1 mm³/J take 3e-3 mm², over a width of 4 mm."""
+    case = SimpleNamespace(creep=SimpleNamespace(wear=1e-9), speed=2.0)
+    of = SimpleNamespace(case=case, shape=SimpleNamespace(semi_axes=(1e-3, 2e-3)))
+    (area, depth) = _wear(of, np.full((1, 2, 5), 3.0)).values()
+    assert [area[0], depth[0]] == pytest.approx([3e-9, 0.75e-6])
 
 
 def test_what_creeps_wears_as_the_cells_of_its_contact_do():
