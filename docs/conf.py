@@ -28,6 +28,14 @@ extensions = [
     "mathml",
     "reading_order",
 ]
+if "READTHEDOCS" in os.environ:  # everywhere else pages are built without a network
+    extensions.append("sphinx.ext.intersphinx")
+    intersphinx_mapping = {
+        "python": ("https://docs.python.org/3", None),
+        "numpy": ("https://numpy.org/doc/stable", None),
+        "scipy": ("https://docs.scipy.org/doc/scipy", None),
+        "xarray": ("https://docs.xarray.dev/en/stable", None),
+    }
 exclude_patterns = ["_build", "generated/gallery/*.ipynb", "generated/gallery/*.py", "generated/parts/*"]
 default_role = "literal"
 smartquotes = False

@@ -12,6 +12,7 @@ from asperity.diagnostics import (
     band_deviations,
     band_velocities,
     envelope_spectrum,
+    envelopes,
     explained_lines,
     find_lines,
     impulsive_band,
@@ -206,3 +207,15 @@ def test_how_sure_a_velocity_in_a_band_is_follows_bandwidth_and_time():
     )  # of eight parts, twelve times
     line = np.sin(2.0 * np.pi * 500.0 * np.arange(int(rate * time)) / rate)
     assert band_deviations(line, rate, bands)[0] < 1e-6
+
+
+def test_a_band_holds_the_lines_at_its_ends():
+    """A line of amplitude one at an end is one in magnitude throughout; a step beyond it is none."""
+    values = np.cos(2.0 * np.pi * 100.0 * np.arange(1_000) / 1_000.0)
+    for low, high, held in ((50.0, 100.0, 1.0), (100.0, 150.0, 1.0), (101.0, 150.0, 0.0), (50.0, 99.0, 0.0)):
+        magnitude = np.abs(envelopes.analytic_signal(values, 1_000.0, low, high))
+        np.testing.assert_allclose(magnitude, held, atol=1e-12)
+
+
+def test_a_window_is_even_about_the_middle_of_a_record():
+    np.testing.assert_allclose(envelopes._window(4), np.sin(np.pi * np.array([1, 3, 5, 7]) / 8.0) ** 2)
