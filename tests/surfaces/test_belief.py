@@ -13,7 +13,7 @@ from asperity.errors import InputError, OutOfRangeWarning
 from asperity.reference.cnossos import rail_roughness
 from asperity.scenarios.records import measured_maps
 from asperity.surfaces.bands import from_bands
-from asperity.surfaces.readers.belief import SLOPES, USUAL_SLOPES, judge_sizes, typical_slope
+from asperity.surfaces.readers.belief import ROUGHEST, SLOPES, USUAL_SLOPES, judge_sizes, typical_slope
 from asperity.surfaces.readers.hints import Hints
 
 ROUGH = np.random.default_rng(3).normal(size=(40, 30))
@@ -138,3 +138,14 @@ def test_lengths_that_are_all_a_thousand_too_small_are_told_with_the_larger_read
     if isinstance(surface, HeightMap):
         with pytest.raises(InputError, match=rf"a map of 40 nm × 30 nm; .* 20 um along each side.*{larger}"):
             measured_maps(Surface(file=surface), 20e-6)
+
+
+def test_a_line_that_bends_is_smooth_where_it_rises_by_more():
+    """Corrugation of 0.1 m, 11 mm high, bends by 0.1 mm between points 2 mm apart; noise as high is doubted."""
+    waves = Profile(5.6e-3 * np.sin(2.0 * np.pi * np.arange(400) * 2e-3 / 0.1), 2e-3)
+    bends = np.abs(np.diff(waves.heights, 2))
+    assert np.median(bends) > ROUGHEST
+    judge_sizes(waves, Hints())
+    rough = Profile(np.random.default_rng(4).normal(0.0, np.std(bends), 400), 2e-3)
+    with pytest.warns(OutOfRangeWarning, match="a thousand times too large"):
+        judge_sizes(rough, Hints())
