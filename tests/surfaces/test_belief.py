@@ -13,6 +13,7 @@ from asperity.errors import InputError, OutOfRangeWarning
 from asperity.reference.cnossos import rail_roughness
 from asperity.scenarios.records import measured_maps
 from asperity.surfaces.bands import from_bands
+from asperity.surfaces.readers import belief
 from asperity.surfaces.readers.belief import ROUGHEST, SLOPES, USUAL_SLOPES, judge_sizes, typical_slope
 from asperity.surfaces.readers.hints import Hints
 
@@ -141,7 +142,7 @@ def test_lengths_that_are_all_a_thousand_too_small_are_told_with_the_larger_read
 
 
 def test_a_line_that_bends_is_smooth_where_it_rises_by_more():
-    """Corrugation of 0.1 m, 11 mm high, bends by 0.1 mm between points 2 mm apart; noise as high is doubted."""
+    """Waves of 0.1 m, 11 mm high, bend by 0.1 mm between points 2 mm apart; noise as high is doubted."""
     waves = Profile(5.6e-3 * np.sin(2.0 * np.pi * np.arange(400) * 2e-3 / 0.1), 2e-3)
     bends = np.abs(np.diff(waves.heights, 2))
     assert np.median(bends) > ROUGHEST
@@ -149,3 +150,11 @@ def test_a_line_that_bends_is_smooth_where_it_rises_by_more():
     rough = Profile(np.random.default_rng(4).normal(0.0, np.std(bends), 400), 2e-3)
     with pytest.warns(OutOfRangeWarning, match="a thousand times too large"):
         judge_sizes(rough, Hints())
+
+
+@pytest.mark.parametrize("unit", [1e-9, 1e-6, 1e-3])
+def test_numbers_that_files_are_filled_with_are_known_in_any_unit(unit):
+    assert all(
+        belief._is_mark(unit * mark) for mark in (-999.0, -9999.0, 9999.0, -99999.0, -32768.0, 32767.0)
+    )
+    assert not any(belief._is_mark(unit * height) for height in (-998.0, 1000.0, 327.0, 0.0))

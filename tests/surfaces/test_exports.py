@@ -264,7 +264,7 @@ def test_marks_between_thousands_of_single_numbers_are_told(read):
     assert read("x (mm),z (nm)\n1.234,560\n1.235,571\n1.236,569\n").heights[1] == pytest.approx(571e-9)
 
 
-@pytest.mark.parametrize("mark", ["-999", "-9999", "9999.0", "-99999", "-32768"])
+@pytest.mark.parametrize("mark", ["-9999", "9999.0", "-99999", "-32768"])
 def test_what_files_are_filled_with_is_doubted_near_others(read, mark):
     """Heights of some 100 nm in nm: a mark is not 300 of their spread away."""
     lines = rows("{x:.2f};{a:.1f}").splitlines()
