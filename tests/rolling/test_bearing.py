@@ -81,6 +81,7 @@ def test_at_a_contact_angle_a_part_of_the_centrifugal_force_presses():
     outwards = 0.5 * WAVY.ball_mass * WAVY.pitch_diameter * (2.0 * math.pi * 0.4 * speed) ** 2
     assert (run.outer_force - run.inner_force).mean() == pytest.approx(outwards * COSINE, rel=0.01)
     assert run.inner_force.min() > 0.0
+    np.testing.assert_array_equal(run.contact_force, np.vstack([run.inner_force, run.outer_force]))
 
 
 LINES = range(1, 200)
