@@ -93,8 +93,8 @@ def _bands(found: OptimisedBearing) -> ReportTable:
         "change / dB": number_cells(found.changes, "{:+.1f}"),
     }
     for (_, (low, high)), alone in zip(JUDGED, found.alone.T, strict=True):
-        columns[f"alone, {low:g} to {high:g} Hz / µm/s"] = number_cells(1e6 * alone, "{:.3g}")
-    return table("alone", "What may be changed, and what it makes alone before", columns)
+        columns[f"{low:g} to {high:g} Hz"] = number_cells(1e6 * alone, "{:.3g}")
+    return table("alone", "What may be changed, and the velocity that it makes alone before, µm/s", columns)
 
 
 def _waves(found: OptimisedBearing) -> Iterator[Panel | str]:
