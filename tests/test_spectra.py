@@ -149,3 +149,9 @@ def test_a_long_segment_takes_few_times_the_memory_of_its_samples():
         assert tracemalloc.get_traced_memory()[1] < 2.8 * signal.nbytes
     finally:
         tracemalloc.stop()
+
+
+def test_a_centred_window_is_even_about_the_middle_of_a_record():
+    expected = np.sin(np.pi * np.array([1, 3, 5, 7]) / 8.0) ** 2
+    assert_allclose(spectra.hann_window(4, centred=True), expected)
+    assert_allclose(spectra.hann_window(4), [0.0, 0.5, 1.0, 0.5], atol=1e-15)

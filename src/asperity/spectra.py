@@ -134,9 +134,11 @@ def lowest_band(samples: int, step: float, *, segment: int | None = None) -> flo
     return _covered_centres(lines, float(lines[1]))[0] if lines.size > 1 else math.inf
 
 
-def hann_window(length: int) -> Array:
-    """Periodic Hann window of `length` samples."""
+def hann_window(length: int, *, centred: bool = False) -> Array:
+    """Hann window of `length` samples, periodic from the first of them; centred, even about their middle."""
     window = np.arange(length, dtype=np.float64)
+    if centred:
+        window += 0.5
     window *= 2.0 * np.pi / length
     np.cos(window, out=window)
     window *= -0.5

@@ -215,7 +215,3 @@ def test_a_band_holds_the_lines_at_its_ends():
     for low, high, held in ((50.0, 100.0, 1.0), (100.0, 150.0, 1.0), (101.0, 150.0, 0.0), (50.0, 99.0, 0.0)):
         magnitude = np.abs(envelopes.analytic_signal(values, 1_000.0, low, high))
         np.testing.assert_allclose(magnitude, held, atol=1e-12)
-
-
-def test_a_window_is_even_about_the_middle_of_a_record():
-    np.testing.assert_allclose(envelopes._window(4), np.sin(np.pi * np.array([1, 3, 5, 7]) / 8.0) ** 2)

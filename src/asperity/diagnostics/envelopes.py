@@ -7,7 +7,7 @@ import numpy as np
 from scipy import fft
 
 from asperity.arguments import Array, ArrayLike, finite_array, one_of, positive, require
-from asperity.spectra import band_energies, psd
+from asperity.spectra import band_energies, hann_window, psd
 from asperity.written_numbers import count_of
 
 ISO_BANDS = ((50.0, 300.0), (300.0, 1800.0), (1800.0, 10_000.0))
@@ -46,7 +46,7 @@ def amplitude_spectrum(signal: ArrayLike, rate: float) -> Spectrum:
 
     values, rate = checked_signal(signal, rate)
     size = next_fast_len(2 * values.size, real=True)
-    window = _window(values.size)
+    window = hann_window(values.size, centred=True)
     weight = window.sum()
     window *= values  # in place, here and below: records may be as long as memory allows
     del values
@@ -58,18 +58,6 @@ def amplitude_spectrum(signal: ArrayLike, rate: float) -> Spectrum:
     amplitude /= weight
     frequency = np.arange(float(amplitude.size)) * (rate / size)
     return frequency, np.asarray(amplitude, dtype=np.float64)
-
-
-def _window(size: int) -> Array:
-    """Hann window of so many points, half a step beside its ends."""
-    window = np.arange(size, dtype=np.float64)
-    window += 0.5
-    window *= 2.0 * np.pi
-    window /= size
-    np.cos(window, out=window)
-    window *= -0.5
-    window += 0.5
-    return window
 
 
 def mean_spectrum(signals: Iterable[tuple[Array, float]], rate: float) -> tuple[Spectrum, float]:

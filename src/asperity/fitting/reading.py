@@ -273,9 +273,10 @@ def _pooled(square: Array, times: NDArray[np.int_]) -> Array | None:
     freedom = np.maximum(times - 1, 0).astype(float)
     if not freedom.any():
         return None
-    near, known = square, freedom
-    for reach in range(1, NEIGHBOURS + 1):
-        wider = known < FREEDOM if reach > 1 else np.full(len(known), True)
+    near = _with_neighbours(square, 1)
+    known = _with_neighbours(freedom, 1)
+    for reach in range(2, NEIGHBOURS + 1):
+        wider = known < FREEDOM
         near = np.where(wider, _with_neighbours(square, reach), near)
         known = np.where(wider, _with_neighbours(freedom, reach), known)
     whole = square.sum() / freedom.sum()

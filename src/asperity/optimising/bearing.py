@@ -65,15 +65,9 @@ class BearingAim(form.Section):
         "after",
         "1 ms to 1 h: records lie between",
     )
-    fewest_waves: int = key(
-        Number(at_least=1, whole=True), 2, "fewest waves per turn that are changed", _ORDERS
-    )
+    fewest_waves: int = key(_COUNT, 2, "fewest waves per turn that are changed", _ORDERS)
     most_waves: int | None = optional(
-        Number(at_least=1, whole=True),
-        100,
-        "most waves per turn that are changed",
-        "the most there are",
-        _ORDERS,
+        _COUNT, 100, "most waves per turn that are changed", "the most there are", _ORDERS
     )
     reach: float = key(
         Quantity("dB", above=0),

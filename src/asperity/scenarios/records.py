@@ -110,11 +110,9 @@ def _in_words(wavelength: Array, level_db: float, grid: Grid, name: str) -> str:
     """Say which bands a spacing holds."""
     held = wavelength[wavelength / HALF_BAND > SAMPLES * grid.spacing]
     if not held.size:
-        waves = (
-            f" of {told_length(wavelength.min())} to {told_length(wavelength.max())}"
-            if wavelength.size
-            else ""
-        )
+        waves = ""
+        if wavelength.size:
+            waves = f" of {told_length(wavelength.min())} to {told_length(wavelength.max())}"
         least = told_length(SAMPLES * grid.spacing)
         path = f"{told_length(grid.length)}, points {told_length(grid.spacing)} apart"
         received = f"bands of waves{waves} for a path of {path}"

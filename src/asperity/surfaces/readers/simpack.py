@@ -61,9 +61,8 @@ def _point(words: Sequence[str], source: str) -> Array:
     """Place and height of a point, whose weight may follow."""
     point = np.array([_number(word) for word in words])
     right = len(point) in (2, 3) and bool(np.isfinite(point).all())
-    require(
-        right, f"points of {source}", repr(" ".join(words)[:60]), "y, z, and perhaps a weight", guards.EXPORT
-    )
+    received = repr(" ".join(words)[:60])
+    require(right, f"points of {source}", received, "y, z, and perhaps a weight", guards.EXPORT)
     return point[:2]
 
 
@@ -79,13 +78,8 @@ def _section(points: Array, stated: Mapping[str, float], source: str) -> Profile
     allowed = "0, a rail, or 1, a wheel"
     require(kind in OUT_OF_MATERIAL, f"type in {source}", f"{kind:g}", allowed, guards.EXPORT)
     per_metre = stated.get("units.len.f", 1.0)
-    require(
-        0.0 < per_metre <= 1e9,
-        f"units.len.f in {source}",
-        f"{per_metre:g}",
-        "a number above 0",
-        guards.EXPORT,
-    )
+    usual = 0.0 < per_metre <= 1e9
+    require(usual, f"units.len.f in {source}", f"{per_metre:g}", "a number above 0, to 1e9", guards.EXPORT)
     for key in UNAPPLIED:
         remedy = "Apply it to the points, and export them."
         require(stated.get(key, 0.0) == 0.0, f"{key} in {source}", f"{stated.get(key, 0.0):g}", "0", remedy)

@@ -139,9 +139,8 @@ def read(path: Path, hints: Hints) -> list[guards.Surface]:
     try:
         return _surfaces(table, header, hints, source)
     except InputError as error:
-        if (
-            table.shape[1] == 2 and dialect.delimiter == ","
-        ):  # or one number, of thousands and a decimal comma
+        # two columns with commas between them, or one number of thousands with a decimal comma
+        if table.shape[1] == 2 and dialect.delimiter == ",":
             _refuse_thousands("\n".join(sample), None, path.name)
         if error.received != positions.UNEVEN or "dx" not in header or "z" not in header:
             raise
