@@ -18,8 +18,6 @@ RESAMPLE = "Resample the heights at a uniform spacing first."
 UNEVEN = "coordinates that are not uniform"
 MOST_DIGITS = 13
 """Digits beyond which a number in double precision was not rounded as it was printed."""
-FEW = 2
-"""Points left out, or two at one place, that any uniform line explains if its coordinates are rounded."""
 CHANCE = 0.1
 """Largest chance that any points, rounded as coarsely, seem to be as even: few of them prove nothing."""
 SURE = 0.75
@@ -198,17 +196,11 @@ def _places_of(rising: Array, *, in_order: bool) -> Index | None:
     if _near(rising, each):
         return each
     times = np.unique(rising, return_counts=True)[1]
-    if times.max() == 1 and _as_printed(rising, each):  # nothing has to be left out
+    by_digits = times.max() == 1 or (in_order and times.min() < times.max())  # digits alone make points equal
+    if by_digits and _as_printed(rising, each):  # nothing has to be left out
         return each
     counted = _counted(rising)
-    different = len(np.unique(counted))
-    exceptions = (int(counted[-1]) + 1 - different) + (len(counted) - different)
-    with_exceptions = _is_dense(counted) and _as_printed(rising, counted)
-    if with_exceptions and exceptions <= FEW:
-        return counted
-    if in_order and times.min() < times.max() and _as_printed(rising, each):
-        return each
-    return counted if with_exceptions else None
+    return counted if _is_dense(counted) and _as_printed(rising, counted) else None
 
 
 def _counted(rising: Array) -> Index:
