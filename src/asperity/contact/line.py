@@ -35,8 +35,9 @@ class LineContact:
     --------
     >>> from asperity import LineContact
     >>> contact = LineContact(113.7e9, 3.25e-3, 6e-3)  # a roller of a bearing NU 205 on its inner ring
-    >>> f"{contact.peak_pressure(500.0) / 1e9:.2f} GPa, {contact.approach(500.0) * 1e6:.2f} um"
-    '0.96 GPa, 2.75 um'
+    >>> approach = contact.approach(500.0)
+    >>> f"{approach * 1e6:.2f} um, {contact.peak_pressure(approach) / 1e9:.2f} GPa"
+    '2.75 um, 0.96 GPa'
     """
 
     modulus: float
@@ -52,36 +53,36 @@ class LineContact:
         """Force at which half the width is an eighth of the length, N: above it the contact is no line."""
         return 0.25 * math.pi * self.modulus * self.length * (WIDEST * self.length) ** 2 / self.radius
 
-    def half_width(self, force: float) -> float:
-        """Half the width b of the contact under a force, m.
+    def half_width(self, approach: float) -> float:
+        """Half the width b of the contact at an approach, m.
 
         Parameters
         ----------
-        force : float
-            N.
+        approach : float
+            m.
 
         Returns
         -------
         float
-            √(4FR/πE*L), m.
+            √(4FR/πE*L), m; zero while apart.
         """
-        along = self._force(force) / (math.pi * self.modulus * self.length)
+        along = self.force(approach) / (math.pi * self.modulus * self.length)
         return 2.0 * math.sqrt(along * self.radius)
 
-    def peak_pressure(self, force: float) -> float:
-        """Pressure on the line under a force, Pa.
+    def peak_pressure(self, approach: float) -> float:
+        """Pressure on the line at an approach, Pa.
 
         Parameters
         ----------
-        force : float
-            N.
+        approach : float
+            m.
 
         Returns
         -------
         float
-            √(FE*/πRL), Pa.
+            √(FE*/πRL), Pa; zero while apart.
         """
-        return math.sqrt(self._force(force) * self.modulus / (math.pi * self.radius * self.length))
+        return math.sqrt(self.force(approach) * self.modulus / (math.pi * self.radius * self.length))
 
     def approach(self, force: float) -> float:
         """Approach of the bodies in the middle of the line under a force, m.
@@ -96,7 +97,11 @@ class LineContact:
         float
             F/(πE*L) (1 + ln(πE*L³/FR)), m.
         """
-        along = self._force(force) / (math.pi * self.modulus * self.length)
+        force = not_negative("force (N)", force)
+        most = self.largest_force
+        allowed = f"at most {rounded(most)} N, where half the width is {WIDEST:g} of the length"
+        require(force <= most * (1.0 + 1e-9), "force on the line contact", f"{rounded(force, 4)} N", allowed)
+        along = force / (math.pi * self.modulus * self.length)
         return along * (1.0 + math.log(self.length**2 / (self.radius * along))) if along else 0.0
 
     def force(self, approach: float) -> float:
@@ -142,14 +147,6 @@ class LineContact:
         if along == 0.0:
             return 0.0
         return math.pi * self.modulus * self.length / math.log(self.length**2 / (self.radius * along))
-
-    def _force(self, force: float) -> float:
-        """A force under which the contact is a line."""
-        force = not_negative("force (N)", force)
-        most = self.largest_force
-        allowed = f"at most {rounded(most)} N, where half the width is {WIDEST:g} of the length"
-        require(force <= most * (1.0 + 1e-9), "force on the line contact", f"{rounded(force, 4)} N", allowed)
-        return force
 
 
 def palmgren_approach(force: float, length: float) -> float:
