@@ -14,6 +14,7 @@ from asperity.progress import Progress
 from asperity.rolling.ledger import Ledger
 from asperity.rolling.mechanism import Along, Edge, Mechanism, Side, rest_of, roll_mechanism
 from asperity.rolling.soundness import STILL, steady
+from asperity.speeds import SpeedCourse
 from asperity.store import Checkpoint
 from asperity.structures.ball_bearing import BallBearing
 from asperity.structures.body import Body
@@ -30,6 +31,9 @@ HELD = 1e5
 TURN = 2.0 * math.pi
 SOFT = 1.0
 """N/m, of the springs whose force is a load that rotates: where rings move by micrometres, it is constant."""
+
+SHORT = 1e-3
+"""Arm on which such a spring presses a ball: the time step has not to resolve it beside the contacts."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,12 +151,12 @@ def roll_bearing(
         ``bearing.raceway_radii``; damping is theirs. Those of a sequence, one for each ball, are laid out on
         positions (n, 2): that one, and the angle of the spot of the ball that touches, rad.
     speed : float
-        Of the ring that turns, turns per second.
+        Of the ring that turns, turns per second; or an `asperity.speeds.SpeedCourse`.
     radial, axial : float
         Load, N; the preload of the bearing is added to the axial one.
     rotating : float
         Radial force on the ring that turns, N, which turns with it, as that of an unbalance; along the radial
-        load at time zero.
+        load at time zero. Where the speed changes, that at the fastest: it goes with the square of the speed.
     duration, time_step, settling : float
         s.
     ball_heights : sequence of array_like, optional
@@ -178,8 +182,9 @@ def roll_bearing(
     mechanism = turning.mechanism((inner_law, outer_law), ball_heights, centrifugal=centrifugal)
     loads = radial, axial + bearing.preload
     mechanism = turning.loaded(mechanism, loads)
+    each = len(mechanism.edges) // bearing.balls
+    contacts = len(mechanism.edges)
     mechanism = replace(mechanism, edges=[*mechanism.edges, *turning.driven_round(rotating)])
-    contacts = len(RINGS) * bearing.balls
     rows = [
         mechanism.row(place, ring.towards(angle, way))
         for place, ring in ((INNER, rings.inner), (OUTER, rings.outer))
@@ -202,14 +207,14 @@ def roll_bearing(
     return RolledBearing(
         np.asarray(time_step * np.arange(steps)),
         turning.cage(turning.total + 1 - steps, turning.total + 1),
-        run.contact_force[0:contacts:2],
-        run.contact_force[1:contacts:2],
+        run.contact_force[INNER:contacts:each],
+        run.contact_force[OUTER:contacts:each],
         np.concatenate(run.bodies),
         run.displacement[:3],
         run.displacement[3:6],
         run.acceleration[6:],
-        np.array([(each[:, 0].min(), each[:, 1].max()) for each in (reached[0::2], reached[1::2])]),
-        run.softening[:contacts].reshape(-1, len(RINGS)).T,
+        np.array([(of[:, 0].min(), of[:, 1].max()) for of in (reached[INNER::each], reached[OUTER::each])]),
+        run.softening[:contacts].reshape(bearing.balls, each)[:, : len(RINGS)].T,
         run.energy,
         run.unconverged_steps,
     )
@@ -217,7 +222,11 @@ def roll_bearing(
 
 @dataclass(eq=False)
 class _Turning:
-    """Angles of everything at every step; those before and after the run go on."""
+    """Angles of everything at every step; those before and after the run go on.
+
+    Angles are those of the speed, where it changes of the fastest, times what `_time` then is: the time in
+    which that turns as far.
+    """
 
     bearing: BallBearing
     rings: BearingRings
@@ -232,10 +241,12 @@ class _Turning:
         self.contact_angle = self.rings.inner.contact_angle
         pure = self.bearing.kinematics(self.speed, contact_angle=self.contact_angle)
         self.turns = pure.inner, pure.outer
-        time = self._time(-1, self.total + 2)
+        time = self._clock(-1, self.total + 2)
         slips = np.zeros(time.size) if self.slip is None else self.slip(time)
         slips = finite_array("slip of the cage", slips, "below 1", count=time.size, below=1.0)
         rate = TURN * pure.cage * (1.0 - slips)
+        if isinstance(self.speed, SpeedCourse):
+            rate *= self.speed.at(time) / float(self.speed)
         done = np.concatenate([[0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1])) * self.time_step])
         self._cage = done - done[round(self.settling / self.time_step) + 1]
         self._spin = TURN * pure.spin
@@ -243,8 +254,26 @@ class _Turning:
         middle = 0.5 * self.bearing.pitch_diameter
         self.centrifugal_force = mass * middle * (TURN * pure.cage) ** 2 * math.cos(self.contact_angle)
 
-    def _time(self, first: int, stop: int) -> Array:
+    def _clock(self, first: int, stop: int) -> Array:
         return np.asarray(self.time_step * np.arange(first, stop) - self.settling)
+
+    def _time(self, first: int, stop: int) -> Array:
+        time = self._clock(first, stop)
+        if isinstance(self.speed, SpeedCourse):
+            return self.speed.covered(time) / float(self.speed)
+        return time
+
+    def _beside_fastest(self, force: float) -> Along | None:
+        """Heights of a soft spring whose force, N, falls with the square of the speed; none if constant."""
+        speed = self.speed
+        if not isinstance(speed, SpeedCourse):
+            return None
+
+        def heights(first: int, stop: int) -> Array:
+            share = speed.at(self._clock(first, stop)) / float(speed)
+            return np.asarray(force / SOFT * (share**2 - 1.0))
+
+        return heights
 
     def cage(self, first: int, stop: int) -> Array:
         """Angle of the first ball."""
@@ -286,16 +315,21 @@ class _Turning:
         *,
         centrifugal: bool,
     ) -> Mechanism:
-        """Balls outwards along the normal, first on the inner ring, then on the outer one."""
+        """Balls outwards along the normal, first on the inner ring, then on the outer one.
+
+        Where the speed changes, a soft spring presses each ball outwards, by as much as it then runs around.
+        """
         of = self.bearing
         bending = self.rings.bending
         allowed = f"{of.balls}, one line for each ball, or none"
         require(len(ball_heights) in (0, of.balls), "heights of the balls", len(ball_heights), allowed)
         none = np.zeros((1, 1))
-        both = np.array([[1.0], [-1.0]])
-        pressing = np.array([-(self.centrifugal_force if centrifugal else 0.0)])
-        ball = Body(np.array([[of.ball_mass]]), none, none, both, pressing, np.zeros(2))
-        edges = []
+        outwards = self.centrifugal_force if centrifugal else 0.0
+        easing = self._beside_fastest(outwards / SHORT) if centrifugal else None
+        rows = np.array([[1.0], [-1.0]] if easing is None else [[1.0], [-1.0], [SHORT]])
+        pressing = np.array([-outwards if easing is None else 0.0])
+        ball = Body(np.array([[of.ball_mass]]), none, none, rows, pressing, np.zeros(len(rows)))
+        edges: list[Edge] = []
         for j in range(of.balls):
             for ring, sign in ((INNER, -1.0), (OUTER, 1.0)):
                 sides = [Side(ring, self.azimuth(j), sign)]
@@ -309,6 +343,8 @@ class _Turning:
                     law = law[j]
                     along = self.on_both(j, ring)
                 edges.append(Edge(law, along, tuple(sides), heights))
+            if easing is not None:
+                edges.append(Edge(Linear(outwards / SHORT, SOFT), self.azimuth(j), heights=easing))
         return Mechanism(self.rings.structures, [ball] * of.balls, edges)
 
     def driven_round(self, force: float) -> list[Edge]:
@@ -323,7 +359,7 @@ class _Turning:
             return lambda first, stop: rate * self._time(first, stop) + angle
 
         return [
-            Edge(Linear(size, SOFT), at(0.0), (Side(ring, at(angle)),))
+            Edge(Linear(size, SOFT), at(0.0), (Side(ring, at(angle)),), self._beside_fastest(size))
             for size, angle in ((half, 0.0), (-half, math.pi))
             if force
         ]

@@ -11,6 +11,7 @@ from asperity.errors import InputError, LargeDeflectionWarning, percent
 from asperity.kernels.rail import Channels
 from asperity.rolling.resolution import PER_MODE, PER_SLEEPER
 from asperity.rolling.steps import Limit, alternating_of_modes, padded, resolved_step
+from asperity.speeds import SpeedCourse
 from asperity.structures.beam import Beam, SupportedBeam
 from asperity.structures.modal import HIGHEST, Modal
 from asperity.structures.moving_kernel import MovingKernel
@@ -21,10 +22,10 @@ from asperity.written_numbers import rounded
 
 @dataclass(frozen=True, eq=False)
 class Path:
-    """Positions of contacts that move at constant speed."""
+    """Positions of contacts that move at one speed, constant or not."""
 
     positions: Array  # (c, n), at every time step of run-in and record, m
-    speed: float  # m/s
+    speed: float  # m/s, or the course of it
     time_step: float  # s
     settled: int = 0  # steps of the run-in; the record starts behind them
 
@@ -37,7 +38,11 @@ class Path:
         steps, settled = (int(np.floor(time / time_step * (1.0 + 1e-12))) for time in (duration, settling))
         if steps < 1:
             raise InputError("duration (s)", duration, f"at least one time step of {time_step:.6g} s")
-        positions = np.asarray(start + speed * time_step * np.arange(-settled, steps + 1))
+        counted = np.arange(-settled, steps + 1)
+        if isinstance(speed, SpeedCourse):
+            positions = np.asarray(start + speed.covered(time_step * counted))
+        else:
+            positions = np.asarray(start + speed * time_step * counted)
         return cls(positions[None], speed, time_step, settled)
 
     def ahead(self, offsets: ArrayLike) -> Path:
@@ -53,6 +58,11 @@ class Path:
     def starts(self) -> Array:
         """Positions of the contacts at step zero (c,), m."""
         return self.positions[:, 0]
+
+    def rates(self, first: int, count: int) -> Array:
+        """Speeds of the contacts at steps (count,), from one on, m/s; of a course alone."""
+        assert isinstance(self.speed, SpeedCourse)
+        return self.speed.at(self.time_step * (np.arange(first, first + count) - self.settled))
 
     @property
     def time(self) -> Array:
@@ -73,7 +83,7 @@ class Ground:
     natural: Array  # angular frequencies of its modes (s,), rad/s; none of a plane or a rail
     ratios: Array  # (s,), damping ratios
     shapes: Array  # (n, s), under the contacts at the start, kg^(−1/2)
-    slopes: Array  # (n, s), likewise, per metre
+    slopes: Array  # (n, s), likewise, per metre; of a speed that changes times this speed, per second
     sensors: Array  # (sensors, s)
     channels: Channels  # of a rail, else none
     softest: float  # largest static compliance under a contact on its path, m/N; infinite if nothing holds it
@@ -113,9 +123,12 @@ def _modes(over: Modal | None, path: Path, sensors: Array) -> Ground:
     followed = frequencies[frequencies <= HIGHEST]  # others are meant to be static
     limit = "the highest mode of the structure", float(followed.max(initial=0.0)), PER_MODE
     channels = no_channels(n)
-    under = shapes(path.starts)
+    under, slopes = shapes(path.starts)
+    if isinstance(path.speed, SpeedCourse):
+        slopes = slopes * path.rates(0, 1)
     seen = shapes(sensors)[0]
-    return Ground(natural, ratios, *under, seen, channels, softest, least, least, limit, np.zeros((n, n)))
+    yields = np.zeros((n, n))
+    return Ground(natural, ratios, under, slopes, seen, channels, softest, least, least, limit, yields)
 
 
 def no_channels(n: int) -> Channels:
@@ -142,6 +155,12 @@ def _refuse_to_leave(over: Modal, path: Path) -> None:
 
 def _rail(rail: RailBetween, path: Path, sensors: Array) -> Ground:
     """A rail, by poles or scattered, between contacts at fixed distances."""
+    if isinstance(path.speed, SpeedCourse):
+        received = f"{path.speed.slowest:.6g} m/s to {path.speed:.6g} m/s on a rail"
+        allowed = (
+            "one constant speed: a rail's kernel is that of one, and its waves remember where they began"
+        )
+        raise InputError("speed", received, allowed, "Roll at several constant speeds.")
     kernel = rail.kernel
     n = len(path.positions)
     given, made = (path.speed, path.time_step), (kernel.speed, kernel.time_step)

@@ -21,6 +21,7 @@ from asperity.rolling import assembly, ground
 from asperity.rolling.ledger import Ledger, ledger_of
 from asperity.rolling.soundness import STILL, free_motion, refuse_missed_load, steady, warn_of_counts
 from asperity.rolling.stepper import OnPaths, Stepper
+from asperity.speeds import SpeedCourse
 from asperity.store import Checkpoint
 from asperity.structures.body import Body
 from asperity.structures.modal import Modal
@@ -86,7 +87,7 @@ def roll_bodies(
     progress: Progress | None = None,
     checkpoint: Checkpoint | None = None,
 ) -> RolledBodies:
-    """Roll bodies over a structure at constant speed, and keep what follows the run-in.
+    """Roll bodies over a structure at a speed, constant or not, and keep what follows the run-in.
 
     All contacts feel each other, through the structure and through the bodies. Structure and bodies are
     advanced exactly for contact forces that are linear over a step; the forces at the end of each step solve
@@ -105,7 +106,8 @@ def roll_bodies(
     laws : sequence of Law
         One for each contact; it reads its texture at the position of its own contact.
     speed : float
-        m/s, of all bodies.
+        m/s, of all bodies; or an `asperity.speeds.SpeedCourse`, on all but rails. Forces along the
+        path, which it asks for, are not in the model.
     start : float
         Where the bodies are at time zero, after the run-in, m.
     duration, time_step : float
@@ -139,7 +141,8 @@ def roll_bodies(
     ahead, seen = (np.atleast_1d(np.asarray(given, dtype=float)) for given in (positions, sensors))
     path = whole.ahead(assembly.offsets_of(bodies, laws, ahead))
     under = ground.ground_of(over, path, seen)
-    system = assembly.system_of(under, bodies, assembly.body_loads(bodies), time_step, speed)
+    climbed = 1.0 if isinstance(speed, SpeedCourse) else speed  # where it changes, slopes are rates already
+    system = assembly.system_of(under, bodies, assembly.body_loads(bodies), time_step, climbed)
     prepared = [law.prepare(at) for law, at in zip(laws, path.positions, strict=True)]
     given, damping = (under, bodies, system, prepared), np.array([law.damping for law in laws])
     at_rest = partial(assembly.start_at_rest, entering=not path.settled)

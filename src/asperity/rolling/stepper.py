@@ -16,6 +16,7 @@ from asperity.laws.spec import Law, SettlingLaw, SteppedLaw, settles
 from asperity.progress import Progress
 from asperity.rolling.ground import Path
 from asperity.rolling.steps import padded
+from asperity.speeds import SpeedCourse
 from asperity.store import Checkpoint
 from asperity.structures.body import Body
 from asperity.structures.modal import Modal
@@ -60,7 +61,10 @@ class Course(Protocol):
 
 @dataclass(eq=False)
 class OnPaths:
-    """Contacts that run over a structure at one speed, under laws that are laid out on all of their paths."""
+    """Contacts that run over a structure, all alike fast, under laws that are laid out on all of their paths.
+
+    Where the speed changes, slopes of mode shapes are multiplied by it: they are rates.
+    """
 
     over: Modal | RailBetween | None
     path: Path
@@ -77,10 +81,19 @@ class OnPaths:
     def shapes_into(self, first: int, shapes: Array, slopes: Array) -> None:
         """Write mode shapes under the contacts and their slopes (steps, n, s), from a step on."""
         over = self.over
-        spacing = self.path.speed * self.path.time_step
-        if over is not None and not isinstance(over, RailBetween):
-            for k, at in enumerate(self.path.positions[:, first]):
-                shapes[:, k], slopes[:, k] = over.shapes_along(float(at), spacing, len(shapes))
+        speed = self.path.speed
+        count = len(shapes)
+        if over is None or isinstance(over, RailBetween):
+            return
+        if isinstance(speed, SpeedCourse):
+            rates = self.path.rates(first, count)[:, None]
+            for k, positions in enumerate(self.path.positions[:, first : first + count]):
+                shapes[:, k], slopes[:, k] = over.shapes(positions)
+                slopes[:, k] *= rates
+            return
+        spacing = speed * self.path.time_step
+        for k, at in enumerate(self.path.positions[:, first]):
+            shapes[:, k], slopes[:, k] = over.shapes_along(float(at), spacing, count)
 
     def laid(self, first: int, stop: int) -> Any:
         """Laws from a step on to another; what no step changes is stacked once."""
