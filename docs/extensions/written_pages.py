@@ -21,6 +21,7 @@ from asperity.case import PRESETS
 from asperity.case.cases import template
 from asperity.cli import main
 from asperity.laws import Need, names, spec_of
+from asperity.reference.bearings import COLUMNS, LISTED, PITCH, by_citation
 
 DOCS = Path(__file__).parents[1]
 ROOT, WRITTEN = DOCS.parent, DOCS / "generated"
@@ -127,6 +128,16 @@ def laws() -> str:
     return "\n".join(rows)
 
 
+def bearings() -> str:
+    """Every bearing that has a name, source by source."""
+    parts: list[str] = []
+    for citation, prints, group in by_citation(LISTED.values()):
+        rows = [COLUMNS, ("---",) * len(COLUMNS), *(each.cells for each in group)]
+        parts += [f"**{citation}.** Printed: {prints}.", ""]
+        parts += [*(f"| {' | '.join(row)} |" for row in rows), ""]
+    return "\n".join([*parts, PITCH])
+
+
 MODULES = {
     "asperity": "Cases, runs, surfaces, contacts and structures",
     "asperity.laws": "Contact laws",
@@ -193,6 +204,7 @@ def write(app: object) -> None:
     pages["commands.md"] = commands()
     pages |= {f"keys-{kind}.md": keys_of(kind) for kind in PRESETS}
     pages |= {"api.rst": api(), "parts/laws.md": laws(), "parts/conformance.md": agreement()}
+    pages["parts/bearings.md"] = bearings()
     (WRITTEN / "parts").mkdir(parents=True, exist_ok=True)
     for name, text in pages.items():
         path = WRITTEN / name

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import MISSING, fields, replace
+from dataclasses import MISSING, dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -23,9 +23,22 @@ from asperity.case.surface import INDEX
 from asperity.case.table_headings import Column
 from asperity.case.tables import TableFile, TableSource, read_table
 from asperity.errors import InputError, PhysicsWarning
-from asperity.parameters import Choice, File, Flag, ListOf, Number, Origin, Quantity, key, keys_of, optional
+from asperity.parameters import (
+    FROM_PYTHON,
+    Choice,
+    File,
+    Flag,
+    ListOf,
+    Number,
+    Origin,
+    Quantity,
+    key,
+    keys_of,
+    optional,
+)
+from asperity.reference.bearings import LISTED, LISTING, named_bearings
 from asperity.rolling.resolution import PER_MODE
-from asperity.structures.ball_bearing import BEARINGS, PARTS, BallBearing, Kinematics
+from asperity.structures.ball_bearing import PARTS, BallBearing, Kinematics
 from asperity.structures.modal import HIGHEST
 from asperity.surfaces.faults import Fault
 from asperity.surfaces.raceway import AroundTexture, closed_trace
@@ -71,12 +84,30 @@ def _refused(made: Callable[[], object]) -> Iterator[InputError]:
         yield error
 
 
+@dataclass(frozen=True)
+class _BearingName(Choice):
+    """A name of the list of bearings, which is too long to stand in a message."""
+
+    words: tuple[str, ...] = tuple(LISTED)
+
+    @property
+    def allowed(self) -> str:
+        """What may stand behind the key."""
+        return f"one of {len(self.words)} names: {LISTING}"
+
+    def __call__(self, value: object, origin: Origin = FROM_PYTHON) -> str:
+        """Return the name."""
+        if not isinstance(value, str) or value not in self.words:
+            self.refuse(value, named_bearings(value))
+        return value
+
+
 class BearingGeometry(Section, parameters=DIMENSIONS):
     """A ball bearing, named or by its dimensions."""
 
     ALTERNATIVES = (("clearance", "contact_angle"),)
 
-    name: str | None = optional(Choice(tuple(BEARINGS)), "6205", "named bearing", "the dimensions are given")
+    name: str | None = optional(_BearingName(), "6205", "named bearing", "the dimensions are given")
 
     @property
     def bearing(self) -> BallBearing:
@@ -94,8 +125,8 @@ class BearingGeometry(Section, parameters=DIMENSIONS):
         """All dimensions of a bearing without a name, which must be one that can be."""
         missing = [name for name in NEEDED if getattr(self, name) is None]
         if self.name is None and missing:
-            remedy = f"Named bearings: {', '.join(BEARINGS)}."
-            yield InputError("name", f"none, and no {' and no '.join(missing)}", "these, or a name", remedy)
+            received = f"none, and no {' and no '.join(missing)}"
+            yield InputError("name", received, "these, or a name", named_bearings())
             return
         yield from _refused(lambda: self.bearing)
 
@@ -117,9 +148,9 @@ class BearingKeys(BearingGeometry):
 def read_bearing(source: str, options: Mapping[str, Any]) -> BearingKeys:
     """Read a bearing by its name, or from a TOML file; options, as they are typed, are stronger."""
     keys: dict[str, Any] = {"name": source}
-    if source not in BEARINGS:
-        remedy = f"Named bearings: {', '.join(BEARINGS)}."
-        keys = toml.read_toml(toml.read_definition(source, "bearing", remedy), "bearing", source)
+    if source not in LISTED:
+        definition = toml.read_definition(source, "bearing", named_bearings(source))
+        keys = toml.read_toml(definition, "bearing", source)
         toml.refuse_vast(keys, source)
     return BearingKeys.read(keys | {k: v for k, v in options.items() if v is not None}, Origin.file(source))
 

@@ -169,11 +169,11 @@ def wheel(section: str, highest: str | None, table: Path | None, picture: Path |
     params=commands.BEARING,
     long_work=True,
 )
-@click.argument("bearing", metavar="NAME|FILE")
+@click.argument("bearing", metavar="NAME|FILE", required=False)
 @click.argument("more", type=PATH, nargs=-1, metavar="[SIGNAL]...")
 @commands.picture("Picture of the load zone, or of the envelope spectrum.")
 def bearing(
-    bearing: str,
+    bearing: str | None,
     more: tuple[Path, ...],
     picture: Path | None,
     signal: tuple[Path, ...],
@@ -192,6 +192,8 @@ def bearing(
 
     Examples
     --------
+    # which bearings have a name, and where their balls are printed
+    asperity bearing --list
     # loads, contact ellipses, pressures, stiffness, tones
     asperity bearing 6205 --radial '100 N' --speed '1797 1/min'
     # loads of the balls as a picture
@@ -204,10 +206,7 @@ def bearing(
     from asperity.cli.bearing import show_bearing
 
     options = {"radial": radial, "axial": axial, "speed": speed, "clearance": clearance}
-    if more and not signal:
-        received = " and ".join([bearing, *map(str, more)])
-        raise InputError("bearing", received, "one", "Files of signals follow --signal.")
-    return show_bearing(bearing, (*signal, *more), picture, options, **hints)
+    return show_bearing(bearing, signal, more, picture, options, **hints)
 
 
 @_begin(

@@ -2,24 +2,28 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from asperity.case.ball_bearing import BearingKeys, read_bearing
 from asperity.cli.heard import heard
 from asperity.diagnostics.decision import NAMES
+from asperity.errors import InputError
+from asperity.reference.bearings import COLUMNS, LISTED, PITCH, TONES, by_citation, named_bearings
 from asperity.reporting.figure import write_chart
 from asperity.scenes.bearing import static_group
 from asperity.scenes.figures.bearing import ball_contacts_table, load_zone
 from asperity.schema import tree
-from asperity.structures.ball_bearing import PARTS, PRINTED_BY, Kinematics
+from asperity.structures.ball_bearing import PARTS, Kinematics
 from asperity.structures.bearing_statics import doubt_speed
 from asperity.terminal import say, say_table
 from asperity.written_numbers import rounded
 
 WIDTH = 122
 TOLD = ("balls", "displacement", "stiffness", "imbalance", "tones", "speed", "speed_is", "band", "lines",
-        "faults", "confidence", "resolution", "turns", "doubts", "signals", "verdict")  # fmt: skip
+        "faults", "confidence", "resolution", "turns", "doubts", "signals", "verdict",
+        "catalogue")  # fmt: skip
 """Names of what is said to programs."""
 MEANINGS = {
     "outer": "BPFO: balls pass a spot of it",
@@ -29,9 +33,26 @@ MEANINGS = {
 
 
 def show_bearing(
-    source: str, signals: Sequence[Path], picture: Path | None, options: dict[str, Any], **hints: Any
+    source: str | None,
+    signals: Sequence[Path],
+    more: Sequence[Path],
+    picture: Path | None,
+    options: dict[str, Any],
+    *,
+    listed: bool = False,
+    **hints: Any,
 ) -> dict[str, Any]:
-    """Print what a bearing does under its load, or what its signals say, and draw it; return the numbers."""
+    """Print what a bearing does under its load, or what its signals say, and draw it; return the numbers.
+
+    Or list all bearings that have a name. `more` are signals behind the first one.
+    """
+    if listed:
+        return _listed()
+    if source is None:
+        raise InputError("bearing", "none", "a NAME or a FILE", named_bearings())
+    if more and not signals:
+        received = " and ".join([source, *map(str, more)])
+        raise InputError("bearing", received, "one", "Files of signals follow --signal.")
     keys = read_bearing(source, options)
     of = keys.bearing
     name = keys.name or source
@@ -42,11 +63,23 @@ def show_bearing(
         f"angle {rounded(math.degrees(of.free_angle))}°"
     )
     if keys.name:
-        say(f"Balls and diameters as printed by {PRINTED_BY}; grooves and clearance chosen here or given.")
-    told = heard(keys, signals, picture, **hints) if signals else _carried(keys, picture)
+        say(LISTED[keys.name].sentence)
+    told = heard(keys, (*signals, *more), picture, **hints) if signals else _carried(keys, picture)
     if picture is not None:
         told["files"] = {"picture": picture}
     return {"bearing": name, **dict.fromkeys(TOLD), **told}
+
+
+def _listed() -> dict[str, Any]:
+    """Print all bearings that have a name, source by source; return them."""
+    for citation, prints, group in by_citation(LISTED.values()):
+        say_table(f"{citation}. Printed: {prints}.", COLUMNS, [each.cells for each in group], width=WIDTH)
+    say(PITCH)
+    say("Nobody prints radii of grooves or clearances of mounted bearings: 0.52 D and 10 µm unless given.")
+    known = [
+        {**asdict(each), "tones": dict(zip(TONES, each.tones, strict=False))} for each in LISTED.values()
+    ]
+    return {"bearing": None, **dict.fromkeys(TOLD), "catalogue": known}
 
 
 # --- what it carries

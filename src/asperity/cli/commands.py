@@ -387,6 +387,7 @@ BEARING = [
         type=click.Choice(["outer", "inner", "ball"]),
         help="Part that is known to have a fault: whether the record shows it is said.",
     ),
+    click.Option(["--list", "listed"], is_flag=True, help="List all NAMEs, and where they are printed."),
 ]
 """What a bearing carries, and where its signal is."""
 CREEP = [

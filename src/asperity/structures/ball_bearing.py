@@ -11,26 +11,19 @@ from asperity.arguments import ArrayLike, not_negative, one_of, real, require, w
 from asperity.contact.hertz import Hertz, in_groove
 from asperity.diagnostics.hypotheses import Tone
 from asperity.parameters import Choice, MaterialOrName, Number, Quantity, checked_parameters, parameter
+from asperity.reference.bearings import LISTED, listed_bearing
 from asperity.reference.materials import MATERIALS, Material, contact_modulus
 from asperity.written_numbers import rounded
 
 if TYPE_CHECKING:
     from asperity.structures.bearing_statics import LoadedBearing
 
-PRINTED_BY = (
-    "the Bearing Data Center of Case Western Reserve University, for SKF 6205-2RS JEM and 6203-2RS JEM"
-)
-"""Diameters of balls and pitch circle, there in inches, here rounded to 10 µm."""
-
-BEARINGS: dict[str, dict[str, float]] = {
-    "6203": {"balls": 8, "ball_diameter": 6.75e-3, "pitch_diameter": 28.50e-3},
-    "6205": {"balls": 9, "ball_diameter": 7.94e-3, "pitch_diameter": 39.04e-3},
-}
-"""By the keywords of `BallBearing`, m."""
+BEARINGS: dict[str, dict[str, Any]] = {name: each.dimensions for name, each in LISTED.items()}
+"""By the keywords of `BallBearing`, m and rad; `asperity.reference.bearings` says where they are printed."""
 CONFORMITY = 0.52
 """Radius of a groove over the diameter of the ball, where none is printed; 0.515 to 0.53 is usual."""
 CLEARANCE = 10e-6
-"""Diametral clearance of the named bearings, m, chosen here."""
+"""Diametral clearance of named bearings without a contact angle, m, chosen here."""
 STATIC_PRESSURE = 4.2e9
 """Peak pressure, Pa, from which on a dent of about 1/10 000 of the ball's diameter remains (ISO 76:2006)."""
 FATIGUE_PRESSURE = 1.5e9
@@ -182,17 +175,20 @@ class BallBearing:
         Parameters
         ----------
         name : str
-            As in `BEARINGS`, where the dimensions are cited.
+            As ``asperity bearing --list`` has it, where the dimensions are cited.
         **others
             Parameters, in SI.
 
         Returns
         -------
         BallBearing
-            With a clearance of 10 µm and grooves of 0.52 D unless others are given: chosen, not printed.
+            With grooves of 0.52 D and, where no contact angle is printed, a clearance of 10 µm unless others
+            are given: chosen, not printed.
         """
-        dimensions: dict[str, Any] = dict(BEARINGS[one_of("bearing", name, BEARINGS)])
-        if others.get("contact_angle") is None:
+        dimensions = listed_bearing(name).dimensions
+        if others.get("clearance") is not None:
+            dimensions.pop("contact_angle", None)
+        elif others.get("contact_angle", dimensions.get("contact_angle")) is None:
             dimensions["clearance"] = CLEARANCE
         return cls(**(dimensions | others))
 
