@@ -1,0 +1,287 @@
+"""A film of oil between bodies that roll on each other: how thick, stiff and damped it is."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from asperity.arguments import Array, one_of, positive
+from asperity.contact.halfspace import HalfSpace
+from asperity.contact.hertz import Hertz
+from asperity.written_numbers import rounded
+
+
+class Fit(NamedTuple):
+    """A film thickness over the radius along the path: c U^a G^b W^d (1 − s exp(−r k))."""
+
+    coefficient: float
+    speed: float
+    material: float
+    load: float
+    leaking: float = 0.0  # s, what leaves to the sides of a circular contact
+    narrow: float = 0.0  # r, how fast that ends as contacts widen
+
+    def thickness(self, groups: "Groups") -> float:
+        """Film thickness over the radius along the path."""
+        kept = 1.0
+        if self.leaking:
+            kept -= self.leaking * math.exp(-self.narrow * groups.ellipticity)
+        shared = groups.speed**self.speed * groups.material**self.material * groups.load**self.load
+        return self.coefficient * shared * kept
+
+
+class Groups(NamedTuple):
+    """Numbers on which a film depends."""
+
+    speed: float  # U = η₀ u/(E' R)
+    material: float  # G = α E'
+    load: float  # W = F/(E' R²) of a point, F/(E' R L) of a line
+    ellipticity: float = math.inf  # k, the axis of the contact across the path over that along it
+
+
+CENTRAL = Fit(2.69, 0.67, 0.53, -0.067, 0.61, 0.73)
+MINIMUM = Fit(3.63, 0.68, 0.49, -0.073, 1.0, 0.68)
+"""Elliptic contacts: B. J. Hamrock and D. Dowson, J. Lubrication Technology 99 (1977) 264. Of a circular one
+the first is 1.90."""
+LINES = {
+    "pan": (Fit(2.922, 0.692, 0.470, -0.166), Fit(1.714, 0.694, 0.568, -0.128)),
+    "dowson": (Fit(3.06, 0.69, 0.56, -0.10), Fit(2.65, 0.70, 0.54, -0.13)),
+}
+"""Central and minimum film of lines: P. Pan and B. J. Hamrock, J. Tribology 111 (1989) 246; D. Dowson and S.
+Toyoda (1979), and D. Dowson and G. R. Higginson, Elasto-Hydrodynamic Lubrication (1977)."""
+FITTED = {"speed": (8.4e-13, 5.1e-11), "material": (2310.0, 6785.0), "load": (1.1e-7, 1.3e-6)}
+"""Least and largest numbers of the 34 solutions of Hamrock and Dowson."""
+WIDEST = 8.0
+"""Largest ellipticity of them; least 1."""
+SYMBOLS = {"speed": "U", "material": "G", "load": "W"}
+FULL, BOUNDARY = 3.0, 1.0
+"""Film parameters from which on a film separates the surfaces, and below which asperities carry: B. J.
+Hamrock, S. R. Schmid and B. O. Jacobson, Fundamentals of Fluid Film Lubrication, 2nd ed. (2004)."""
+
+
+@dataclass(frozen=True)
+class Film:
+    """Film of oil between smooth bodies in an elliptic contact, which roll.
+
+    Parameters
+    ----------
+    contact : Hertz
+        Of the bodies, x along the path.
+    speed : float
+        Mean of the speeds with which both surfaces run into the contact, m/s: that of rolling, without slip.
+    viscosity : float
+        η₀ of the oil at the inlet without pressure, Pa s.
+    pressure_viscosity : float
+        α, 1/Pa.
+    reduction : float
+        Share of the isothermal film that the heating of the inlet leaves, `inlet_heating`.
+
+    Raises
+    ------
+    InputError
+        If a number is not positive.
+
+    Notes
+    -----
+    The inlet is full of oil: starvation, as of grease, is not in it. Film and bodies are in series: under a
+    force F the bodies have come nearer by δ_H(F) − h(F). As h falls with F, though slowly, the contact is
+    softer than without oil, and gives way as it is pressed faster: an edge of the contact that moves into the
+    inlet with da/dt has the speed u + da/dt there, so that h grows by 0.67 h/u · da/dt. Against that the
+    contact pushes with c = k · 0.67 h a/(2 δ u), which hardly changes with the load. Both hold for motion
+    that is slow against the time 2a/u in which the oil passes through.
+
+    Examples
+    --------
+    >>> from asperity.contact.film import Film
+    >>> from asperity.contact.hertz import in_groove
+    >>> film = Film(in_groove(115e9, 3.97e-3, 4.13e-3, 15.55e-3), 1.76, 0.0173, 18.5e-9)  # of a 6205
+    >>> f"{film.central(60.0) * 1e6:.2f} µm, least {film.minimum(60.0) * 1e6:.2f} µm"
+    '0.16 µm, least 0.13 µm'
+    """
+
+    contact: Hertz
+    speed: float
+    viscosity: float
+    pressure_viscosity: float
+    reduction: float = 1.0
+
+    def __post_init__(self) -> None:
+        for name in ("speed", "viscosity", "pressure_viscosity", "reduction"):
+            positive(f"{name} of the film", getattr(self, name))
+
+    def groups(self, force: float) -> Groups:
+        """Numbers on which it depends under a force, N."""
+        modulus, radius = 2.0 * self.contact.modulus, self.contact.radius_x
+        return Groups(
+            self.viscosity * self.speed / (modulus * radius),
+            self.pressure_viscosity * modulus,
+            positive("force (N)", force) / (modulus * radius**2),
+            1.03 * (self.contact.radius_y / radius) ** 0.64,
+        )
+
+    def central(self, force: float) -> float:
+        """Film thickness in the middle of the contact under a force, N; m."""
+        return self.reduction * self.contact.radius_x * CENTRAL.thickness(self.groups(force))
+
+    def minimum(self, force: float) -> float:
+        """Least film thickness of the contact, at its sides, under a force, N; m."""
+        return self.reduction * self.contact.radius_x * MINIMUM.thickness(self.groups(force))
+
+    def stiffness(self, force: float) -> float:
+        """dF/dδ, N/m, of bodies and film in series under a force, N: 1/k = 1/k_H − dh/dF."""
+        bodies = self.contact.tangent_stiffness(self.contact.approach(force))
+        return 1.0 / (1.0 / bodies - CENTRAL.load * self.central(force) / force)
+
+    def damping(self, force: float) -> float:
+        """Damping of the contact under a force, N, by the film that its edge draws in; N s/m."""
+        approach = self.contact.approach(force)
+        along, _ = self.contact.semi_axes(approach)
+        drawn = CENTRAL.speed * self.central(force) / self.speed  # dh over the speed of the edge, s
+        return self.stiffness(force) * drawn * 0.5 * along / approach
+
+    def outside(self, force: float) -> Iterator[str]:
+        """What of it is outside the solutions that its formula was fitted to, under a force, N: in words."""
+        groups = self.groups(force)
+        for name, (least, most) in FITTED.items():
+            value = getattr(groups, name)
+            if not least <= value <= most:
+                yield f"{SYMBOLS[name]} {rounded(value)} ({rounded(least)} to {rounded(most)})"
+        if not 1.0 <= groups.ellipticity <= WIDEST:
+            yield f"k {rounded(groups.ellipticity)} (1 to {WIDEST:g})"
+
+
+def line_film(
+    modulus: float,
+    radius: float,
+    load: float,
+    speed: float,
+    viscosity: float,
+    pressure_viscosity: float,
+    fit: str = "pan",
+) -> tuple[float, float]:
+    """Central and least thickness of the film of a line contact, as of a roller, m.
+
+    Parameters
+    ----------
+    modulus : float
+        Contact modulus E*, Pa.
+    radius : float
+        Relative radius along the path, m.
+    load : float
+        Per length, N/m.
+    speed, viscosity, pressure_viscosity : float
+        As in `Film`.
+    fit : {"pan", "dowson"}
+        As in `LINES`.
+
+    Returns
+    -------
+    central, minimum : float
+        m.
+
+    Raises
+    ------
+    InputError
+        If a number is not positive, or the fit unknown.
+    """
+    numbers = modulus, radius, load, speed, viscosity, pressure_viscosity
+    for what, value in zip(line_film.__annotations__, numbers, strict=False):
+        positive(f"{what} of the line contact", value)
+    twice = 2.0 * modulus
+    groups = Groups(viscosity * speed / (twice * radius), pressure_viscosity * twice, load / (twice * radius))
+    central, minimum = LINES[one_of("fit of the film", fit, LINES)]
+    return radius * central.thickness(groups), radius * minimum.thickness(groups)
+
+
+def inlet_heating(
+    viscosity: float, thinning: float, speed: float, conductivity: float, sliding: float = 0.0
+) -> float:
+    """Share of the isothermal film that is left where shear heats the oil in the inlet.
+
+    Parameters
+    ----------
+    viscosity : float
+        η₀, Pa s.
+    thinning : float
+        β = −d ln η/dT, 1/K, `asperity.contact.oil.Oil.thinning`.
+    speed : float
+        Mean of both surfaces, m/s.
+    conductivity : float
+        Of the oil, W/(m K).
+    sliding : float
+        Difference of the speeds of both surfaces over their sum; 0 of pure rolling.
+
+    Returns
+    -------
+    float
+        (1 + 0.241 (1 + 14.8 Z^0.83) L^0.64)⁻¹, L = η₀ β u²/k.
+
+    Notes
+    -----
+    W. R. D. Wilson and S. Sheu, J. Lubrication Technology 105 (1983) 187.
+    """
+    heated = viscosity * thinning * speed**2 / conductivity
+    return 1.0 / (1.0 + 0.241 * (1.0 + 14.8 * abs(sliding) ** 0.83) * heated**0.64)
+
+
+def squeeze_force(contact: Hertz, viscosity: float, gap: float, speed: float) -> float:
+    """Force of oil between rigid bodies that come nearer without rolling, N, at a gap, m, and a speed, m/s.
+
+    12 π η V √(R_x R_y)/(h (1/R_x + 1/R_y)), the closed form of Reynolds' equation for the gap
+    h + x²/2R_x + y²/2R_y: of a ball on a plane 6 π η V R²/h.
+    """
+    mean = math.sqrt(contact.radius_x * contact.radius_y)
+    opening = 1.0 / contact.radius_x + 1.0 / contact.radius_y
+    return 12.0 * math.pi * viscosity * speed * mean / (positive("gap (m)", gap) * opening)
+
+
+def regime(parameter: float) -> str:
+    """Say by the film parameter Λ, least film over combined rms roughness, what separates the surfaces."""
+    if parameter >= FULL:
+        return "full film"
+    return "boundary" if parameter < BOUNDARY else "mixed"
+
+
+def asperity_share(
+    heights: Array, spacing: tuple[float, float], modulus: float, film: float, pressure: float
+) -> float:
+    """Share of the load that asperities carry where a film keeps the mean planes of the surfaces apart.
+
+    Parameters
+    ----------
+    heights : ndarray (nx, ny)
+        Combined roughness of both surfaces within the contact, m.
+    spacing : (float, float)
+        Distances of its points, m.
+    modulus : float
+        Contact modulus E*, Pa.
+    film : float
+        Distance of the mean planes: the central film, m.
+    pressure : float
+        Mean pressure of the contact, Pa, which film and asperities carry together.
+
+    Returns
+    -------
+    float
+        Mean pressure of elastic asperities over that of the contact, at most 1.
+
+    Notes
+    -----
+    The rough contact is solved on one period of the surface, whose mean planes stay as far apart as the film
+    keeps them: bodies have been deformed already, by what film and asperities carry together. The oil
+    between asperities is as thick there as between smooth surfaces.
+    """
+    positive("film (m)", film)
+    above = heights - heights.mean()
+    if above.max() <= film:
+        return 0.0
+    half_space = HalfSpace((heights.shape[0], heights.shape[1]), spacing, modulus, boundary="periodic")
+    solved = half_space.solve(film - above, approach=0.0, rtol=1e-4)
+    return min(solved.force / (above.size * half_space.cell_area * pressure), 1.0)
+
+
+def combined_rms(*rms: float) -> float:
+    """Rms of the sum of heights that have nothing to do with each other, from the rms of each."""
+    return float(np.sqrt(np.sum(np.square(rms))))
