@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 from asperity.errors import ExtrapolationWarning
 from asperity.laws import HertzLaw, Linear
-from asperity.rolling.mechanism import Edge, Mechanism, Side, roll_mechanism
+from asperity.rolling.mechanism import Contact, Mechanism, Side, Trajectory, roll_mechanism
 from asperity.rolling.roll import roll_bodies
 from asperity.structures.body import Body, chain
 from asperity.structures.modal import ModalStructure
@@ -21,11 +21,14 @@ BELOW = HertzLaw(2e10, rough(2e-7, 1e-4, -0.01), damping=5.0)
 
 
 def running(step):
-    """Positions of a contact that runs from zero on."""
-    return lambda first, stop: SPEED * step * np.arange(first, stop)
+    """A contact that runs from zero on."""
+    return Trajectory(
+        lambda steps: SPEED * step * np.asarray(steps), lambda steps: np.full(len(steps), SPEED)
+    )
 
 
-along = running(STEP)
+ALONG = running(STEP)
+along = ALONG.places
 
 
 def plate(mass, frequency=0.0, damping=0.0):
@@ -40,9 +43,9 @@ def between(step):
     ball = Body(np.array([[MASS]]), none, none, rows, np.array([MASS * 9.80665]), np.zeros(2))
     upper = Linear(0.0, SPRING)
     at = running(step)
-    edges = [Edge(BELOW, at), Edge(upper, at, (Side(0, at),))]
+    contacts = [Contact(BELOW, at.places), Contact(upper, at.places, (Side(0, at),))]
     force = np.array([LOAD + ABOVE * 9.80665]) * -(ABOVE**-0.5)
-    return Mechanism([plate(ABOVE)], [ball], edges, [force])
+    return Mechanism([plate(ABOVE)], [ball], contacts, [force])
 
 
 def test_a_ball_between_two_planes_is_a_chain_on_one():
@@ -63,21 +66,37 @@ def test_a_ball_between_two_planes_is_a_chain_on_one():
 def test_two_structures_swing_against_each_other_with_their_reduced_mass():
     """No body between them: ω² = k (1/m + 1/M), from the forces that press them."""
     light, heavy, k, press = 0.2, 0.8, 1e6, 3.0
-    sides = Side(0, along, 1.0), Side(1, along, -1.0)
-    contact = Edge(Linear(0.0, k), along, sides)
+    sides = Side(0, ALONG, 1.0), Side(1, ALONG, -1.0)
+    contact = Contact(Linear(0.0, k), along, sides)
     forces = [np.array([-press]) / light**0.5, np.array([press]) / heavy**0.5]
     both = Mechanism([plate(light), plate(heavy)], [], [contact], forces)
     run = roll_mechanism(both, press, time_step=STEP, duration=TIME)
     assert_allclose(run.contact_force, press, rtol=1e-9)
-    waved = Edge(
-        Linear(0.0, k), along, sides, heights=lambda first, stop: 1e-6 * (np.arange(first, stop) > 9)
-    )
+    waved = Contact(Linear(0.0, k), along, sides, heights=lambda steps: 1e-6 * (np.asarray(steps) > 9))
     run = roll_mechanism(
         Mechanism(both.structures, [], [waved], forces), press, time_step=STEP, duration=TIME
     )
     omega, time = np.sqrt(k * (1 / light + 1 / heavy)), STEP * np.arange(run.contact_force.shape[1])
     swing = run.contact_force[0, 10:] - press
     assert_allclose(swing, k * 1e-6 * np.cos(omega * (time[10:] - 9.5 * STEP)), atol=0.02)
+
+
+def test_what_swings_along_a_slope_works_on_it_at_the_rate_that_is_given():
+    """On a mode that tilts: its drive takes up what bodies and structure lose, and nothing else."""
+    turning = 2 * np.pi * 200.0
+    swing = Trajectory(
+        lambda steps: 0.2 + 0.1 * np.sin(turning * STEP * np.asarray(steps)),
+        lambda steps: 0.1 * turning * np.cos(turning * STEP * np.asarray(steps)),
+    )
+    across = np.linspace(-1.0, 1.0, 9)
+    tilting = ModalStructure(across, [10.0], 0.0, across[:, None])
+    contact = Contact(Linear(LOAD, 1e6, damping=2.0), swing.places, (Side(0, swing),))
+    run = roll_mechanism(
+        Mechanism([tilting], [Body.rigid(MASS, LOAD)], [contact]), LOAD, time_step=STEP, duration=TIME
+    )
+    slope = run.energy.shares["slope of the structure"]
+    assert abs(slope) > 0.01 * run.energy.throughput
+    assert run.energy.residual < 1e-6
 
 
 def test_a_law_beyond_its_data_is_warned_of():
@@ -89,16 +108,16 @@ def test_a_law_beyond_its_data_is_warned_of():
 
     ball = Body.rigid(MASS, LOAD)
     with pytest.warns(ExtrapolationWarning, match=r"short: .* in \d+ of 101 time steps"):
-        roll_mechanism(Mechanism([], [ball], [Edge(Short(), along)]), LOAD, time_step=STEP, duration=1e-3)
+        roll_mechanism(Mechanism([], [ball], [Contact(Short(), along)]), LOAD, time_step=STEP, duration=1e-3)
 
 
 def test_laws_that_are_solved_in_every_step_go_beside_others():
-    """The same law looked up; heights of an edge raise both."""
+    """The same law looked up; heights of a contact raise both."""
     runs = []
     for law in (BELOW, Stepped(BELOW)):
         made = between(STEP)
-        edge = Edge(law, along, heights=lambda first, stop: 1e-7 * np.sin(np.arange(first, stop) / 30.0))
-        made = replace(made, edges=[edge, made.edges[1]])
+        lower = Contact(law, along, heights=lambda steps: 1e-7 * np.sin(np.asarray(steps) / 30.0))
+        made = replace(made, contacts=[lower, made.contacts[1]])
         runs.append(roll_mechanism(made, 10.0, time_step=STEP, duration=2e-3).contact_force)
     same(runs[1], runs[0], 3e-5)  # each step to 1e-6
     assert np.ptp(runs[0][0]) > 1.0
@@ -108,6 +127,6 @@ BALL = Body.rigid(MASS, LOAD)
 
 
 test_what_is_no_mechanism_is_refused = refusals(
-    (lambda: Mechanism([], [BALL], []), "edges.*0 for 1 contact .*one for each contact of a body"),
-    (lambda: Mechanism([], [BALL], [Edge(BELOW, along, (Side(0, along),))]), "structure of a contact"),
+    (lambda: Mechanism([], [BALL], []), "contacts.*0 for 1 contact .*one for each contact of a body"),
+    (lambda: Mechanism([], [BALL], [Contact(BELOW, along, (Side(0, ALONG),))]), "structure of a contact"),
 )

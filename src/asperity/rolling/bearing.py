@@ -12,7 +12,15 @@ from asperity.laws.linear import Linear
 from asperity.laws.spec import Law
 from asperity.progress import Progress
 from asperity.rolling.ledger import Ledger
-from asperity.rolling.mechanism import Along, Edge, Mechanism, Side, rest_of, roll_mechanism
+from asperity.rolling.mechanism import (
+    Contact,
+    Mechanism,
+    Side,
+    Trajectory,
+    Values,
+    rest_of,
+    roll_mechanism,
+)
 from asperity.rolling.soundness import STILL, steady
 from asperity.speeds import SpeedCourse
 from asperity.store import Checkpoint
@@ -182,9 +190,9 @@ def roll_bearing(
     mechanism = turning.mechanism((inner_law, outer_law), ball_heights, centrifugal=centrifugal)
     loads = radial, axial + bearing.preload
     mechanism = turning.loaded(mechanism, loads)
-    each = len(mechanism.edges) // bearing.balls
-    contacts = len(mechanism.edges)
-    mechanism = replace(mechanism, edges=[*mechanism.edges, *turning.driven_round(rotating)])
+    each = len(mechanism.contacts) // bearing.balls
+    contacts = len(mechanism.contacts)
+    mechanism = replace(mechanism, contacts=[*mechanism.contacts, *turning.driven_round(rotating)])
     rows = [
         mechanism.row(place, ring.towards(angle, way))
         for place, ring in ((INNER, rings.inner), (OUTER, rings.outer))
@@ -206,7 +214,7 @@ def roll_bearing(
     reached = run.reached[:contacts]
     return RolledBearing(
         np.asarray(time_step * np.arange(steps)),
-        turning.cage(turning.total + 1 - steps, turning.total + 1),
+        turning.cage(range(turning.total + 1 - steps, turning.total + 1)),
         run.contact_force[INNER:contacts:each],
         run.contact_force[OUTER:contacts:each],
         np.concatenate(run.bodies),
@@ -222,7 +230,7 @@ def roll_bearing(
 
 @dataclass(eq=False)
 class _Turning:
-    """Angles of everything at every step; those before and after the run go on.
+    """Angles of everything at every step, and how fast they grow.
 
     Angles are those of the speed, where it changes of the fastest, times what `_time` then is: the time in
     which that turns as far.
@@ -241,65 +249,68 @@ class _Turning:
         self.contact_angle = self.rings.inner.contact_angle
         pure = self.bearing.kinematics(self.speed, contact_angle=self.contact_angle)
         self.turns = pure.inner, pure.outer
-        time = self._clock(-1, self.total + 2)
+        time = self._clock(range(self.total + 1))
         slips = np.zeros(time.size) if self.slip is None else self.slip(time)
         slips = finite_array("slip of the cage", slips, "below 1", count=time.size, below=1.0)
-        rate = TURN * pure.cage * (1.0 - slips)
-        if isinstance(self.speed, SpeedCourse):
-            rate *= self.speed.at(time) / float(self.speed)
+        self._rate = rate = TURN * pure.cage * (1.0 - slips) * self._share(range(self.total + 1))
         done = np.concatenate([[0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1])) * self.time_step])
-        self._cage = done - done[round(self.settling / self.time_step) + 1]
+        self._cage = done - done[round(self.settling / self.time_step)]
         self._spin = TURN * pure.spin
         mass = self.bearing.ball_mass
         middle = 0.5 * self.bearing.pitch_diameter
         self.centrifugal_force = mass * middle * (TURN * pure.cage) ** 2 * math.cos(self.contact_angle)
 
-    def _clock(self, first: int, stop: int) -> Array:
-        return np.asarray(self.time_step * np.arange(first, stop) - self.settling)
+    def _clock(self, steps: range) -> Array:
+        return np.asarray(self.time_step * np.arange(steps.start, steps.stop, steps.step) - self.settling)
 
-    def _time(self, first: int, stop: int) -> Array:
-        time = self._clock(first, stop)
+    def _time(self, steps: range) -> Array:
+        time = self._clock(steps)
         if isinstance(self.speed, SpeedCourse):
             return self.speed.covered(time) / float(self.speed)
         return time
 
-    def _beside_fastest(self, force: float) -> Along | None:
+    def _share(self, steps: range) -> Array:
+        """Speed in shares of the fastest: how much longer `_time` grows in a second."""
+        if isinstance(self.speed, SpeedCourse):
+            return self.speed.at(self._clock(steps)) / float(self.speed)
+        return np.ones(len(steps))
+
+    def _beside_fastest(self, force: float) -> Values | None:
         """Heights of a soft spring whose force, N, falls with the square of the speed; none if constant."""
-        speed = self.speed
-        if not isinstance(speed, SpeedCourse):
+        if not isinstance(self.speed, SpeedCourse):
             return None
+        return lambda steps: np.asarray(force / SOFT * (self._share(steps) ** 2 - 1.0))
 
-        def heights(first: int, stop: int) -> Array:
-            share = speed.at(self._clock(first, stop)) / float(speed)
-            return np.asarray(force / SOFT * (share**2 - 1.0))
-
-        return heights
-
-    def cage(self, first: int, stop: int) -> Array:
+    def cage(self, steps: range) -> Array:
         """Angle of the first ball."""
-        return self._cage[first + 1 : stop + 1]
+        return self._cage[steps.start : steps.stop : steps.step]
 
-    def azimuth(self, ball: int, ring: int | None = None) -> Along:
+    def azimuth(self, ball: int, ring: int | None = None) -> Trajectory:
         """Angle of a ball, in the frame of a ring that turns if there is one."""
         ahead = TURN * ball / self.bearing.balls
-        if ring is None:
-            return lambda first, stop: self.cage(first, stop) + ahead
-        rate = TURN * self.turns[ring]
-        return lambda first, stop: self.cage(first, stop) + ahead - rate * self._time(first, stop)
+        turned = 0.0 if ring is None else TURN * self.turns[ring]
 
-    def on_raceway(self, ball: int, ring: int) -> Along:
+        def places(steps: range) -> Array:
+            return self.cage(steps) + ahead - turned * self._time(steps)
+
+        def rates(steps: range) -> Array:
+            return self._rate[steps.start : steps.stop : steps.step] - turned * self._share(steps)
+
+        return Trajectory(places, rates)
+
+    def on_raceway(self, ball: int, ring: int) -> Values:
         """Position of a ball along a raceway, m, from 0 to its circumference."""
-        radius, azimuth = self.bearing.raceway_radii[ring], self.azimuth(ball, ring)
-        return lambda first, stop: radius * (azimuth(first, stop) % TURN)
+        radius, azimuth = self.bearing.raceway_radii[ring], self.azimuth(ball, ring).places
+        return lambda steps: radius * (azimuth(steps) % TURN)
 
-    def spot(self, ring: int) -> Along:
+    def spot(self, ring: int) -> Values:
         """Angle of the spot of a ball that touches a ring; the spots are opposite."""
-        return lambda first, stop: self._spin * self._time(first, stop) + (0.0 if ring else math.pi)
+        return lambda steps: self._spin * self._time(steps) + (0.0 if ring else math.pi)
 
-    def on_both(self, ball: int, ring: int) -> Along:
+    def on_both(self, ball: int, ring: int) -> Values:
         """The same beside the angle of the spot that touches (n, 2)."""
         both = self.on_raceway(ball, ring), self.spot(ring)
-        return lambda first, stop: np.column_stack([each(first, stop) for each in both])
+        return lambda steps: np.column_stack([each(steps) for each in both])
 
     def usual_load(self, radial: float, axial: float) -> float:
         """Contact force by which tolerances are measured, N: that of the ball that carries most, about."""
@@ -329,7 +340,7 @@ class _Turning:
         rows = np.array([[1.0], [-1.0]] if easing is None else [[1.0], [-1.0], [SHORT]])
         pressing = np.array([-outwards if easing is None else 0.0])
         ball = Body(np.array([[of.ball_mass]]), none, none, rows, pressing, np.zeros(len(rows)))
-        edges: list[Edge] = []
+        contacts: list[Contact] = []
         for j in range(of.balls):
             for ring, sign in ((INNER, -1.0), (OUTER, 1.0)):
                 sides = [Side(ring, self.azimuth(j), sign)]
@@ -342,12 +353,13 @@ class _Turning:
                 if isinstance(law, Sequence):
                     law = law[j]
                     along = self.on_both(j, ring)
-                edges.append(Edge(law, along, tuple(sides), heights))
+                contacts.append(Contact(law, along, tuple(sides), heights))
             if easing is not None:
-                edges.append(Edge(Linear(outwards / SHORT, SOFT), self.azimuth(j), heights=easing))
-        return Mechanism(self.rings.structures, [ball] * of.balls, edges)
+                spring = Linear(outwards / SHORT, SOFT)
+                contacts.append(Contact(spring, self.azimuth(j).places, heights=easing))
+        return Mechanism(self.rings.structures, [ball] * of.balls, contacts)
 
-    def driven_round(self, force: float) -> list[Edge]:
+    def driven_round(self, force: float) -> list[Contact]:
         """A radial force, N, on the ring that turns and with it, by two springs that are pressed and pulled.
 
         They stand opposite each other, so that what they would do along the axis cancels.
@@ -355,11 +367,13 @@ class _Turning:
         ring = RINGS.index(self.bearing.turning)
         rate, half = TURN * self.turns[ring], 0.5 * force / math.cos(self.contact_angle)
 
-        def at(angle: float) -> Along:
-            return lambda first, stop: rate * self._time(first, stop) + angle
+        def at(angle: float) -> Trajectory:
+            return Trajectory(
+                lambda steps: rate * self._time(steps) + angle, lambda steps: rate * self._share(steps)
+            )
 
         return [
-            Edge(Linear(size, SOFT), at(0.0), (Side(ring, at(angle)),), self._beside_fastest(size))
+            Contact(Linear(size, SOFT), at(0.0).places, (Side(ring, at(angle)),), self._beside_fastest(size))
             for size, angle in ((half, 0.0), (-half, math.pi))
             if force
         ]
@@ -388,17 +402,17 @@ class _Turning:
         return replace(mechanism, pressed=pressed)
 
 
-def _heights(line: ArrayLike | None, spots: Along, raised: float) -> Along:
+def _heights(line: ArrayLike | None, spots: Values, raised: float) -> Values:
     """Heights of a closed line at the spots of a ball that touch, or none, all raised, m."""
     if line is None:
-        return lambda first, stop: np.full(stop - first, raised)
+        return lambda steps: np.full(len(steps), raised)
     from scipy.interpolate import CubicSpline
 
     heights = finite_array("heights of a ball (m)", line, "finite numbers, four or more", shape=(None,))
     require(heights.size >= 4, "heights of a ball", count_of(heights.size, "number"), "four or more")
     angles = TURN * np.arange(heights.size + 1) / heights.size
     spline = CubicSpline(angles, np.append(heights, heights[0]), bc_type="periodic")
-    return lambda first, stop: np.asarray(spline(spots(first, stop))) + raised
+    return lambda steps: np.asarray(spline(spots(steps))) + raised
 
 
 def _row_of(mechanism: Mechanism, rings: BearingRings, bearing: BallBearing, sensor: Sensor) -> Array:

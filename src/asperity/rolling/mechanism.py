@@ -26,10 +26,18 @@ from asperity.structures.body import Body
 from asperity.structures.modal import HIGHEST, Modal
 from asperity.written_numbers import count_of
 
-Along = Callable[[int, int], Array]
-"""Values of steps: from one on to before another; from −1 to one beyond the last where slopes are taken."""
+Values = Callable[[range], Array]
+"""Values at time steps, counted from the start of the run-in: one for each."""
 LOOKED_AT = 64
 """Steps at which compliances are looked at."""
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectory:
+    """Where a contact is on a structure at time steps, and how fast it goes there."""
+
+    places: Values  # m, or rad of a ring
+    rates: Values  # m/s, or rad/s
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,25 +45,25 @@ class Side:
     """A structure on one side of a contact, which opens with its displacement times the sign."""
 
     structure: int
-    places: Along  # on the structure, m, or rad of a ring
+    trajectory: Trajectory
     sign: float = 1.0
 
 
 @dataclass(frozen=True, eq=False)
-class Edge:
+class Contact:
     """A contact of a body with structures, or of structures with each other."""
 
     law: Law
-    positions: Along  # where the law is laid out, m; of one that takes several, a column for each
+    positions: Values  # where the law is laid out, m; of one that takes several, a column for each
     sides: tuple[Side, ...] = ()
-    heights: Along | None = None  # what is there beside the law's texture, m, positive out of the material
+    heights: Values | None = None  # what is there beside the law's texture, m, positive out of the material
 
 
 @dataclass(frozen=True, eq=False)
 class Mechanism:
     """Bodies and structures, and the contacts between them.
 
-    The contacts of the bodies come first, numbered through the bodies as in `roll_bodies`; edges beyond them
+    The contacts of the bodies come first, numbered through the bodies as in `roll_bodies`; those beyond them
     have structures on both sides. A body between two structures has two contacts; bodies that touch each
     other are one `Body` with both of their coordinates, whose contact is opened by the one and the other.
 
@@ -65,7 +73,7 @@ class Mechanism:
         By their modes, as `asperity.structures.modal` or `asperity.structures.ring`; rotating frames too.
     bodies : sequence of Body
         Their `places` along the path are not looked at.
-    edges : sequence of Edge
+    contacts : sequence of Contact
         One for each contact.
     pressed : sequence of ndarray, optional
         Constant forces on the modes of each structure.
@@ -73,17 +81,17 @@ class Mechanism:
 
     structures: Sequence[Modal]
     bodies: Sequence[Body]
-    edges: Sequence[Edge]
+    contacts: Sequence[Contact]
     pressed: Sequence[Array] = field(default_factory=tuple)
 
     def __post_init__(self) -> None:
         touching = sum(len(body.places) for body in self.bodies)
-        short = f"{len(self.edges)} for {count_of(touching, 'contact')} of the bodies"
+        short = f"{len(self.contacts)} for {count_of(touching, 'contact')} of the bodies"
         allowed = "one for each contact of a body, or more"
-        require(len(self.edges) >= max(touching, 1), "edges", short, allowed)
+        require(len(self.contacts) >= max(touching, 1), "contacts", short, allowed)
         last = len(self.structures) - 1
-        for edge in self.edges:
-            known = all(0 <= side.structure <= last for side in edge.sides)
+        for contact in self.contacts:
+            known = all(0 <= side.structure <= last for side in contact.sides)
             require(known, "structure of a contact", "one that is not there", f"0 to {last}")
 
     @property
@@ -105,8 +113,8 @@ class Mechanism:
         return row
 
     def still(self) -> Sequence[Body]:
-        """Its bodies, and one that does not move for the edges beyond them."""
-        beyond = len(self.edges) - sum(len(body.places) for body in self.bodies)
+        """Its bodies, and one that does not move for the contacts beyond them."""
+        beyond = len(self.contacts) - sum(len(body.places) for body in self.bodies)
         if not beyond:
             return self.bodies
         none = np.zeros((1, 1))
@@ -115,7 +123,7 @@ class Mechanism:
 
 
 @dataclass(eq=False)
-class _OnEdges:
+class _OnContacts:
     """The course of a mechanism: everything is laid out piece by piece."""
 
     mechanism: Mechanism
@@ -123,40 +131,42 @@ class _OnEdges:
     total: int
 
     def __post_init__(self) -> None:
-        self.contacts = len(self.mechanism.edges)
-        first = [edge.law.prepare(edge.positions(0, 1)) for edge in self.mechanism.edges]
+        self.contacts = len(self.mechanism.contacts)
+        first = [contact.law.prepare(contact.positions(range(1))) for contact in self.mechanism.contacts]
         solved = not all(isinstance(law, Prepared) for law in first)
         # laws that are solved in every step remember where they were: all are laid out on all the way
-        self.whole = [_laid(edge, 0, self.total + 1) for edge in self.mechanism.edges] if solved else []
+        self.whole = self._laid(range(self.total + 1)) if solved else []
         # approach of each contact that is within its data at all steps laid out; and where these begin
         self.within = np.full(self.contacts, np.inf)
         self.begun = self.total
 
     def place(self, contact: int, step: int) -> float:
         """Position of a contact at a step, m."""
-        return float(self.mechanism.edges[contact].positions(step, step + 1).flat[0])
+        return float(self.mechanism.contacts[contact].positions(range(step, step + 1)).flat[0])
 
     def shapes_into(self, first: int, shapes: Array, slopes: Array) -> None:
         """Write mode shapes under the contacts and their rates (steps, n, s), from a step on."""
         starts = self.mechanism.first_modes
-        stop = first + len(shapes)
+        steps = range(first, first + len(shapes))
         shapes[:], slopes[:] = 0.0, 0.0
-        for k, edge in enumerate(self.mechanism.edges):
-            for side in edge.sides:
-                places = side.places(first - 1, stop + 1)
+        for k, contact in enumerate(self.mechanism.contacts):
+            for side in contact.sides:
                 modes = slice(starts[side.structure], starts[side.structure + 1])
-                found, rising = self.mechanism.structures[side.structure].shapes(places[1:-1])
-                rate = (places[2:] - places[:-2]) / (2.0 * self.time_step)
+                of = self.mechanism.structures[side.structure]
+                found, rising = of.shapes(side.trajectory.places(steps))
                 shapes[:, k, modes] += side.sign * found
-                slopes[:, k, modes] += side.sign * rising * rate[:, None]
+                slopes[:, k, modes] += side.sign * rising * side.trajectory.rates(steps)[:, None]
+
+    def _laid(self, steps: range) -> list[Any]:
+        return [_laid(contact, steps) for contact in self.mechanism.contacts]
 
     def at_start(self) -> Sequence[Prepared | SteppedLaw]:
         """Laws whose first step is the first of all."""
-        return self.whole or [_laid(edge, 0, 1) for edge in self.mechanism.edges]
+        return self.whole or self._laid(range(1))
 
     def laid(self, first: int, stop: int) -> Any:
         """The same, for the compiled kernel."""
-        prepared = [_laid(edge, first, stop) for edge in self.mechanism.edges]
+        prepared = self._laid(range(first, stop))
         lowest = [law.planes.min() + (0.0 if law.form == TABLE else law.values.min()) for law in prepared]
         self.within = np.minimum(
             self.within, [law.upper + h for law, h in zip(prepared, lowest, strict=True)]
@@ -165,12 +175,12 @@ class _OnEdges:
         return Prepared(**stacked(prepared, Prepared._fields)), sizes_of(prepared)
 
 
-def _laid(edge: Edge, first: int, stop: int) -> Any:
-    """The law of an edge, `Prepared` or a `SteppedLaw`, whose textures are raised by its heights."""
-    law = edge.law.prepare(edge.positions(first, stop))
-    if edge.heights is None:
+def _laid(contact: Contact, steps: range) -> Any:
+    """The law of a contact, `Prepared` or a `SteppedLaw`, whose textures are raised by its heights."""
+    law = contact.law.prepare(contact.positions(steps))
+    if contact.heights is None:
         return law
-    heights = edge.heights(first, stop)
+    heights = contact.heights(steps)
     return law._replace(planes=law.planes - heights) if isinstance(law, Prepared) else _raised(law, heights)
 
 
@@ -222,7 +232,7 @@ def roll_mechanism(
     Parameters
     ----------
     mechanism : Mechanism
-        Its edges give their places at step 0, where the run-in begins, and on.
+        Its contacts give their places from step 0 on, where the run-in begins.
     load : float
         A usual contact force, N: each is found to 1e-10 of itself plus this.
     time_step, duration, settling : float
@@ -247,11 +257,11 @@ def roll_mechanism(
     settled = round(settling / h)
     recorded = round(positive("duration (s)", duration) / h)
     require(recorded >= 1, "duration (s)", duration, f"at least one time step of {h:.6g} s")
-    course = _OnEdges(mechanism, h, settled + recorded)
+    course = _OnContacts(mechanism, h, settled + recorded)
     seen = np.zeros((0, mechanism.first_modes[-1])) if sensors is None else np.asarray(sensors, dtype=float)
     looked_at = np.unique(np.linspace(0, course.total, LOOKED_AT).astype(int)).tolist()
     bodies = mechanism.still()
-    laws = [edge.law for edge in mechanism.edges]
+    laws = [contact.law for contact in mechanism.contacts]
     prepared = course.at_start()
     ground = _ground(course, seen, looked_at)
     damping = np.array([law.damping for law in laws])
@@ -281,15 +291,15 @@ def roll_mechanism(
 
 def rest_of(mechanism: Mechanism, step: int, load: float) -> Array:
     """Coordinates of all modes (s,) of a mechanism at rest, as it stands at a step; `load` as above, N."""
-    course = _OnEdges(mechanism, 1.0, 0)
+    course = _OnContacts(mechanism, 1.0, 0)
     bodies = mechanism.still()
     ground = _ground(course, np.zeros((0, mechanism.first_modes[-1])), [step])
     system = assembly.system_of(ground, bodies, np.full(course.contacts, load), 1.0, 1.0, mechanism.constant)
-    laws = [_laid(edge, step, step + 1) for edge in mechanism.edges]
+    laws = [_laid(contact, range(step, step + 1)) for contact in mechanism.contacts]
     return _start(ground, bodies, system, laws)[1].displacement[: mechanism.first_modes[-1]]
 
 
-def _ground(course: _OnEdges, sensors: Array, looked_at: Sequence[int]) -> Ground:
+def _ground(course: _OnContacts, sensors: Array, looked_at: Sequence[int]) -> Ground:
     """All structures as one: what they are to the contacts at the first of some steps, and at worst."""
     mechanism, n = course.mechanism, course.contacts
     none = np.zeros(0)
@@ -343,7 +353,7 @@ CHECKED = 2**14
 """Steps at once of which is asked whether the laws went beyond what they were made for."""
 
 
-def _warn(stepper: Stepper, course: _OnEdges) -> None:
+def _warn(stepper: Stepper, course: _OnContacts) -> None:
     """Warn of steps that missed the tolerance, and of laws that were continued beyond their data."""
     counts, seen = stepper.motion.counts, stepper.record.relative_displacement
     seen = seen - stepper.system.softening[:, None] * stepper.record.contact_force
@@ -353,7 +363,7 @@ def _warn(stepper: Stepper, course: _OnEdges) -> None:
         solved.warn_of_flaws()
     for k in np.flatnonzero(doubted & [k not in stepper.stepped for k in range(len(doubted))]).tolist():
         for first in range(0, course.total + 1, CHECKED):
-            stop = min(first + CHECKED, course.total + 1)
-            law = _laid(course.mechanism.edges[k], first, stop)
-            beyond[k] += evaluate_all(law, np.ascontiguousarray(seen[k, first:stop]), 0)[2]
+            steps = range(first, min(first + CHECKED, course.total + 1))
+            law = _laid(course.mechanism.contacts[k], steps)
+            beyond[k] += evaluate_all(law, np.ascontiguousarray(seen[k, first : steps.stop]), 0)[2]
     warn_of_counts([law.name for law in stepper.laws], counts, beyond.tolist(), seen.shape[1])
