@@ -22,6 +22,7 @@ _HOME = {
     "Material": "reference.materials",
     "ModalStructure": "structures.modal",
     "Profile": "surfaces.heightmap",
+    "RollerBearing": "structures.roller_bearing",
     "SlicedContact": "contact.slices",
     "SlidingContact": "contact.friction",
     "Support": "structures.beam",

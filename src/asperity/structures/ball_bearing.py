@@ -283,14 +283,9 @@ class BallBearing:
         Kinematics
             Frequencies, Hz.
         """
-        speed = not_negative("speed (1/s)", speed)
-        real("slip", slip, "0 or more, below 1", at_least=0.0, below=1.0)
         angle = self.free_angle if contact_angle is None else contact_angle
-        gamma = self.ball_diameter / self.pitch_diameter * math.cos(angle)
-        inner, outer = (speed, 0.0) if self.turning == "inner" else (0.0, speed)
-        cage = 0.5 * (inner * (1.0 - gamma) + outer * (1.0 + gamma)) * (1.0 - slip)
-        spin = 0.5 * speed * self.pitch_diameter / self.ball_diameter * (1.0 - gamma**2)
-        return Kinematics(self.balls, inner, outer, cage, spin)
+        diameters = self.ball_diameter, self.pitch_diameter
+        return Kinematics.rolling(self.balls, diameters, angle, self.turning, speed=speed, slip=slip)
 
     def tones(self, axial: bool = False) -> dict[str, Tone]:
         """Tones of faults of its parts per turn, and how far contact angle and slip may move them.
@@ -389,6 +384,47 @@ class Kinematics:
     outer: float
     cage: float
     spin: float
+
+    @classmethod
+    def rolling(
+        cls,
+        balls: int,
+        diameters: tuple[float, float],
+        angle: float,
+        turning: str,
+        *,
+        speed: float,
+        slip: float = 0.0,
+    ) -> Kinematics:
+        """Frequencies of rolling without sliding, but for a slip of the cage.
+
+        Parameters
+        ----------
+        balls : int
+            Z: balls, or rollers.
+        diameters : (float, float)
+            Of a ball or roller, and of the circle of their centres, m.
+        angle : float
+            Of the contacts, rad.
+        turning : {"inner", "outer"}
+            The ring that turns.
+        speed : float
+            Of that ring, Hz.
+        slip : float
+            Share by which the cage is slower than in pure rolling.
+
+        Returns
+        -------
+        Kinematics
+        """
+        speed = not_negative("speed (1/s)", speed)
+        real("slip", slip, "0 or more, below 1", at_least=0.0, below=1.0)
+        diameter, pitch = diameters
+        gamma = diameter / pitch * math.cos(angle)
+        inner, outer = (speed, 0.0) if turning == "inner" else (0.0, speed)
+        cage = 0.5 * (inner * (1.0 - gamma) + outer * (1.0 + gamma)) * (1.0 - slip)
+        spin = 0.5 * speed * pitch / diameter * (1.0 - gamma**2)
+        return cls(balls, inner, outer, cage, spin)
 
     @property
     def turning(self) -> float:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -13,19 +12,11 @@ from asperity.arguments import Array, ArrayLike, finite_array, not_negative, req
 from asperity.contact.hertz import Hertz, check_half_space
 from asperity.errors import ComputationError, Grade, InputError, OutOfRangeWarning
 from asperity.structures.ball_bearing import FASTEST, FATIGUE_PRESSURE, STATIC_PRESSURE, BallBearing
+from asperity.structures.least_energy import TOLERANCE, least_energy
 from asperity.written_numbers import rounded
 
 STEPS = 24
 """Angles of the cage over the passing of a ball."""
-TOLERANCE = 1e-10
-"""Force out of balance over the load."""
-PATIENCE, ROUNDED = 30, 1e-7
-"""Steps after which this much is taken: where loads are of millinewtons, rounding may allow no better."""
-MOST_STEPS = 100
-LOOSE = 1e-4
-"""Way, m, that what nothing holds yet is moved by a step, at most."""
-HALVINGS = 40
-"""Of a step that does not go downhill."""
 SPEEDS = 14
 """Halvings of the interval that holds the speed at which a ball leaves the inner ring."""
 
@@ -169,43 +160,6 @@ def _link(stretch: Array, length: float, constant: float) -> tuple[Array, Array,
     return 0.4 * constant * overlap**2.5, load[..., None] * normal, stiffness, load
 
 
-def _descended(
-    energy_of: Callable[[Array], tuple[Array, Array, Array]], start: Array, scale: float, what: str
-) -> tuple[Array, float]:
-    """Least energies by Newton's method with halved steps: places (…, n), and the imbalance.
-
-    `energy_of` gives energies (…), gradients (…, n) and Hessians (…, n, n) of convex functions; a gradient
-    counts as zero below `TOLERANCE` of the scale.
-    """
-    place = start
-    energy, gradient, hessian = energy_of(place)
-    for step in range(MOST_STEPS):
-        size = np.linalg.norm(gradient, axis=-1)
-        if size.max() <= (TOLERANCE if step < PATIENCE else ROUNDED) * scale:
-            return place, float(size.max() / scale)
-        trace = np.trace(hessian, axis1=-2, axis2=-1)
-        least = np.maximum(np.maximum(1e-13 * trace, 1e-9 * trace.max()), (trace == 0.0) * scale / LOOSE)
-        ridge = least[..., None, None] * np.eye(place.shape[-1])
-        move = -np.linalg.solve(hessian + ridge, gradient[..., None])[..., 0]
-        slope = (move * gradient).sum(-1)
-        share = np.ones(size.shape)
-        for _ in range(HALVINGS):
-            tried = energy_of(place + share[..., None] * move)
-            left = np.linalg.norm(tried[1], axis=-1)
-            lower = tried[0] <= energy + 1e-4 * share * slope
-            down = lower | (left <= np.maximum((1.0 - 1e-4 * share) * size, TOLERANCE * scale))
-            if down.all():
-                break
-            share = np.where(down, share, 0.5 * share)
-        place = place + share[..., None] * move
-        energy, gradient, hessian = tried
-    raise ComputationError(
-        f"{what}: {rounded(np.linalg.norm(gradient, axis=-1).max() / scale, 1)} of the load is out of "
-        f"balance after {MOST_STEPS} steps",
-        "another load, clearance or speed",
-    )
-
-
 @dataclass(frozen=True)
 class _Balls:
     """What the balls of a bearing do between two groove centres that are a stretch (…, 2) apart."""
@@ -236,7 +190,7 @@ class _Balls:
             return energy, force, stiffness, ball
         free = np.zeros_like(stretch)
         free[..., 0] = length + (self.lift / constant) ** (2.0 / 3.0)
-        ball, _ = _descended(
+        ball, _ = least_energy(
             lambda at: self._apart(stretch, at),
             np.where((load > self.lift)[..., None], ball, free),
             0.1 * max(self.lift, float(load.max())),
@@ -283,7 +237,7 @@ def _solved(bearing: BallBearing, radial: float, axial: float, speed: float, ang
     pressed = (5.0 * scale / bearing.balls / bearing.series_stiffness) ** (2.0 / 3.0)
     start[:, 0] = (max(0.5 * bearing.radial_clearance, 0.0) + pressed) * (radial > 0.0)
     start[:, 2] = (A * math.sin(bearing.free_angle) + math.sqrt(2.0 * A * pressed)) * (axial > 0.0)
-    ring, imbalance = _descended(energy_of, start, max(scale, lift), "balance of the inner ring")
+    ring, imbalance = least_energy(energy_of, start, max(scale, lift), "balance of the inner ring")
     stretch = stretched(ring)
     ball = balls.together(stretch)[3]
     inner, outer = _link(stretch - ball, *balls.inner), _link(ball, *balls.outer)

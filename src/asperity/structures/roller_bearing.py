@@ -1,0 +1,298 @@
+"""A roller bearing: geometry and contacts along lines, what turns how fast."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Literal
+
+from asperity.arguments import ArrayLike, one_of, require
+from asperity.contact.crowning import FORMS, OF_DIAMETER, Crowning, Form
+from asperity.contact.hertz import relative_radius
+from asperity.contact.slices import FEWEST, SLICES, SlicedContact
+from asperity.parameters import Choice, MaterialOrName, Number, Quantity, checked_parameters, parameter
+from asperity.reference.materials import MATERIALS, Material, contact_modulus
+from asperity.structures.ball_bearing import FASTEST, HARDNESS, Kinematics
+from asperity.written_numbers import rounded
+
+if TYPE_CHECKING:
+    from asperity.structures.roller_statics import LoadedRollers
+
+ROLLER_BEARINGS: dict[str, dict[str, float]] = {
+    "NU205": {"rollers": 13, "roller_diameter": 7.5e-3, "roller_length": 7.8e-3, "pitch_diameter": 39e-3},
+}
+"""By the keywords of `RollerBearing`, m. Of NU 205 the raceways, of 31.5 and 46.5 mm, are those of makers'
+catalogues; how many rollers it has, and how long they carry, is not printed, and is chosen so that ISO 76
+makes the static load rating of these catalogues of it, 27 kN."""
+CLEARANCE = 20e-6
+"""Diametral clearance of the named bearings, m, chosen here."""
+STEEL = MATERIALS["steel"]
+_LENGTH = Quantity("m", above=0)
+_GAP = "-1 mm to 10 mm: bearings lie between"
+_PRESSURE = Quantity("Pa", above=0)
+_HARD = "1 MPa to 100 GPa: no solid is as soft, or as hard"
+
+
+@dataclass(frozen=True)
+class RollerBearing:
+    """Roller bearing of one row: equal rollers between two rigid raceways, held apart by a cage.
+
+    Parameters
+    ----------
+    rollers : int
+        Z.
+    roller_diameter, roller_length, pitch_diameter : float
+        D, the effective length L, and d_m, m.
+    contact_angle : float
+        Of both raceways, rad: 0 of a cylindrical roller bearing.
+    clearance : float
+        Diametral: how far the inner ring moves from side to side, m; below zero the rollers are pressed.
+    crowning : {"cylindrical", "circular", "partial", "logarithmic"}
+        Form of the rollers, or of rollers and raceways together, see `asperity.Crowning`.
+    crowning_drop : float, optional
+        How far they fall back at the ends, m; by default 0.00035 D, which ISO/TS 16281 has for logarithmic
+        ones.
+    crowning_straight : float
+        Length of the straight middle of a partial crowning, m.
+    slices : int
+        Into how many a roller is cut along its length, 30 or more.
+    hardness : float
+        Of the rings, Pa.
+    material, roller_material : Material
+        Of rings and rollers.
+    turning : {"inner", "outer"}
+        The ring that turns.
+
+    Raises
+    ------
+    InputError
+        If a number is out of range, the rollers do not fit side by side, or a crowning cannot be.
+
+    Notes
+    -----
+    Contacts are the slices of ISO/TS 16281, see `asperity.SlicedContact`. There is no film of lubricant, no
+    friction, and rings do not bend. Of a tapered roller bearing both raceways are taken as parallel, at the
+    angle of the outer one, and the small force of the rib on the rollers is left out.
+
+    Examples
+    --------
+    >>> from asperity import RollerBearing
+    >>> bearing = RollerBearing.named("NU205")
+    >>> turning = bearing.kinematics(speed=1800 / 60)
+    >>> f"{turning.ball_pass_outer:.1f} Hz, {turning.ball_pass_inner:.1f} Hz"
+    '157.5 Hz, 232.5 Hz'
+    >>> loaded = bearing.loaded(radial=2000.0)
+    >>> f"{loaded.inner_load.max():.0f} N, {loaded.inner_pressure.max() / 1e9:.2f} GPa"
+    '889 N, 1.41 GPa'
+    """
+
+    rollers: int = parameter(
+        Number(at_least=3, whole=True), 13, "number of rollers", "3 to 500: bearings lie between"
+    )
+    roller_diameter: float = parameter(
+        _LENGTH, "7.5 mm", "diameter of a roller", "0.1 mm to 1 m: rollers lie between"
+    )
+    roller_length: float = parameter(
+        _LENGTH, "7.8 mm", "length along which a roller carries", "0.1 mm to 2 m: rollers lie between"
+    )
+    pitch_diameter: float = parameter(
+        _LENGTH,
+        "39 mm",
+        "diameter of the circle of the rollers' centres",
+        "1 mm to 10 m: bearings lie between",
+    )
+    contact_angle: float = parameter(
+        Quantity("rad", at_least=0, at_most=1.4),
+        "0 deg",
+        "angle of the raceways to the axis; 0 of cylindrical rollers",
+        "0 deg to 80 deg: radial bearings lie between",
+        default=0.0,
+    )
+    clearance: float = parameter(
+        Quantity("m"), "20 um", "diametral clearance; below zero the rollers are pressed", _GAP, default=0.0
+    )
+    crowning: Form = parameter(  # noqa: RUF009
+        Choice(FORMS), "logarithmic", "form of the rollers along their length", default="logarithmic"
+    )
+    crowning_drop: float | None = parameter(
+        Quantity("m", at_least=0),
+        "2.6 um",
+        "how far they fall back at the ends; of logarithmic ones the factor of the logarithm",
+        "1 nm to 1 mm: crownings lie between",
+        default=None,
+        otherwise="0 of cylindrical rollers, and 0.00035 diameters of others",
+    )
+    crowning_straight: float = parameter(
+        Quantity("m", at_least=0),
+        "0 mm",
+        "length of the straight middle of a partial crowning",
+        "0 mm to 1 m: rollers lie between",
+        default=0.0,
+    )
+    slices: int = parameter(
+        Number(at_least=FEWEST, at_most=1000, whole=True),
+        SLICES,
+        "slices along a roller",
+        default=SLICES,
+    )
+    hardness: float = parameter(_PRESSURE, "7 GPa", "hardness of the rings", _HARD, default=HARDNESS)
+    material: Material = parameter(  # noqa: RUF009
+        MaterialOrName(), "steel", "material of the rings", default=STEEL
+    )
+    roller_material: Material = parameter(  # noqa: RUF009
+        MaterialOrName(), "steel", "material of the rollers", default=STEEL
+    )
+    turning: Literal["inner", "outer"] = parameter(
+        Choice(("inner", "outer")), "inner", "the ring that turns", default="inner"
+    )
+
+    def __post_init__(self) -> None:
+        checked_parameters(self)
+        D, d_m = self.roller_diameter, self.pitch_diameter
+        room = d_m * math.sin(math.pi / self.rollers)  # between the centres of neighbours
+        received = f"{self.rollers} of {D * 1e3:.4g} mm on a pitch diameter of {d_m * 1e3:.4g} mm"
+        allowed = f"rollers that fit side by side: at most {room * 1e3:.4g} mm"
+        require(room >= D, "rollers", received, allowed, "Take fewer or smaller rollers.")
+        received = f"{rounded(self.clearance * 1e6, 4)} µm"
+        allowed = f"less than {rounded(D * 1e5)} µm, a tenth of the roller's diameter, to either side"
+        require(abs(self.clearance) < 0.1 * D, "clearance", received, allowed, "Is the unit right?")
+        _ = self.profile  # checks the crowning
+
+    @classmethod
+    def named(cls, name: str, **others: Any) -> RollerBearing:
+        """A bearing by its designation, with other values for some parameters.
+
+        Parameters
+        ----------
+        name : str
+            As in `ROLLER_BEARINGS`, where it is said what is printed of it.
+        **others
+            Parameters, in SI.
+
+        Returns
+        -------
+        RollerBearing
+            With a clearance of 20 µm and the profile of ISO/TS 16281 unless others are given.
+        """
+        dimensions: dict[str, Any] = dict(ROLLER_BEARINGS[one_of("bearing", name, ROLLER_BEARINGS)])
+        return cls(**(dimensions | {"clearance": CLEARANCE} | others))
+
+    def with_(self, **others: Any) -> RollerBearing:
+        """The same bearing with other values for some parameters, in SI."""
+        return replace(self, **others)
+
+    @cached_property
+    def profile(self) -> Crowning:
+        """How far the rollers fall back along their length."""
+        drop = self.crowning_drop
+        if drop is None:
+            drop = 0.0 if self.crowning == "cylindrical" else OF_DIAMETER * self.roller_diameter
+        return Crowning(self.crowning, self.roller_length, drop, self.crowning_straight)
+
+    @property
+    def raceway_radii(self) -> tuple[float, float]:
+        """Radii of inner and outer raceway in the middle of a roller, (d_m ∓ D cos α)/2, m."""
+        half = 0.5 * self.roller_diameter * math.cos(self.contact_angle)
+        return 0.5 * self.pitch_diameter - half, 0.5 * self.pitch_diameter + half
+
+    @cached_property
+    def inner_contact(self) -> SlicedContact:
+        """Contact of a roller and the inner ring."""
+        return self._contact(self.raceway_radii[0])
+
+    @cached_property
+    def outer_contact(self) -> SlicedContact:
+        """Contact of a roller and the outer ring, in which it lies."""
+        return self._contact(-self.raceway_radii[1])
+
+    def _contact(self, raceway: float) -> SlicedContact:
+        """Contact on a raceway: normal to its surface one of radius R has R/cos α along the path."""
+        modulus = contact_modulus(self.material, self.roller_material)
+        along = raceway / math.cos(self.contact_angle)
+        radius = relative_radius(0.5 * self.roller_diameter, along, what="radii of roller and raceway (m)")
+        return SlicedContact(modulus, radius, self.profile, self.slices)
+
+    @property
+    def fastest(self) -> float:
+        """Speed, turns per second, beyond which hardly any bearing of this size runs, Hz."""
+        return FASTEST / (60.0 * 1e3 * self.pitch_diameter)
+
+    @property
+    def roller_mass(self) -> float:
+        """Mass of a roller of its effective length, kg."""
+        return 0.25 * math.pi * self.roller_diameter**2 * self.roller_length * self.roller_material.density
+
+    def centrifugal_force(self, speed: float) -> float:
+        """Force of a roller outwards, m (d_m/2) (2π f_c)², N, at a speed, turns per second."""
+        cage = 2.0 * math.pi * self.kinematics(speed).cage
+        return 0.5 * self.roller_mass * self.pitch_diameter * cage**2
+
+    def kinematics(self, speed: float, *, slip: float = 0.0) -> Kinematics:
+        """How fast everything turns where rollers roll without sliding, but for a slip of the cage.
+
+        Parameters
+        ----------
+        speed : float
+            Of the ring that turns, turns per second.
+        slip : float
+            Share by which the cage is slower than in pure rolling.
+
+        Returns
+        -------
+        Kinematics
+            Frequencies, Hz: those of balls there are those of rollers.
+        """
+        diameters = self.roller_diameter, self.pitch_diameter
+        angle, turning = self.contact_angle, self.turning
+        return Kinematics.rolling(self.rollers, diameters, angle, turning, speed=speed, slip=slip)
+
+    def loaded(
+        self,
+        radial: float = 0.0,
+        axial: float = 0.0,
+        *,
+        tilt: ArrayLike | None = None,
+        moment: ArrayLike | None = None,
+        speed: float = 0.0,
+        cage_angles: ArrayLike | None = None,
+    ) -> LoadedRollers:
+        """How it carries a load: of each roller its share and how that lies along it, at each cage angle.
+
+        Parameters
+        ----------
+        radial, axial : float
+            Forces on the inner ring, N; rollers with a contact angle of 0 carry no axial one.
+        tilt : float or (float, float), optional
+            Of the inner ring, rad, in the plane of the radial load and across it: a positive one moves it
+            axially where the load points, and presses the ends of those rollers that lie back along the axis.
+            0 by default; the moments are found.
+        moment : float or (float, float), optional
+            On the inner ring in these planes, N m, instead: the tilt is found.
+        speed : float
+            Turns per second, for the centrifugal force on the rollers.
+        cage_angles : array_like (m,), optional
+            Angles of the first roller from the direction of the radial load, rad; by default 24 over the
+            passing of one roller.
+
+        Returns
+        -------
+        LoadedRollers
+            Displacements, loads, their distribution along the rollers, pressures, stiffnesses.
+
+        Raises
+        ------
+        InputError
+            Without a load, with an axial one that nothing carries, or one under which contacts are no lines.
+
+        Warns
+        -----
+        OutOfRangeWarning
+            Where pressures leave dents, a crowning is deeper than the approach brings to bear, or an end that
+            is sharp carries.
+        """
+        from asperity.structures.roller_statics import roller_load_distribution
+
+        return roller_load_distribution(
+            self, radial, axial, tilt=tilt, moment=moment, speed=speed, cage_angles=cage_angles
+        )

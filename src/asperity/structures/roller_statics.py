@@ -1,0 +1,317 @@
+"""How a roller bearing carries a load at rest: the energy of all slices is least there, and convex."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from asperity.arguments import Array, ArrayLike, finite_array, not_negative, require
+from asperity.contact.slices import SlicedContact
+from asperity.errors import ComputationError, Grade, InputError, OutOfRangeWarning, percent
+from asperity.structures.bearing_statics import STEPS
+from asperity.structures.least_energy import TOLERANCE, least_energy
+from asperity.structures.roller_bearing import RollerBearing
+from asperity.written_numbers import rounded
+
+STATIC_PRESSURE = 4.0e9
+"""Peak pressure of rollers, Pa, from which on a dent of 1/10 000 of their diameter remains (ISO 76:2006)."""
+STEEPEST = 0.1
+"""Half width of a contact over the radius of its gap, above which it is refused: no half-space."""
+LEAST_LENGTH = 0.5
+"""Share of the length of the heaviest roller that carries, below which its crowning is told."""
+SHARP = 0.5
+"""Pressure at an end that does not fall back without limit, over the largest, from which on it is told."""
+FORCES, MOMENTS = slice(0, 3), slice(3, 5)
+"""Along the load, across it, axially; tilts in the plane of the load and across it."""
+
+
+@dataclass(frozen=True, eq=False)
+class LoadedRollers:
+    """A roller bearing under a load at m angles of its cage, its Z rollers of n slices at ψ from the load.
+
+    Attributes
+    ----------
+    bearing : RollerBearing
+        What is loaded.
+    radial, axial, speed : float
+        Load on the inner ring, N, and turns per second.
+    azimuth : ndarray (m, Z)
+        ψ of the rollers, rad; those of the first roller are the angles of the cage.
+    displacement : ndarray (m, 5)
+        Of the inner ring: along the radial load, across it (towards ψ = 90°), axially, m; tilts in the plane
+        of the load and across it, rad.
+    moment : ndarray (m, 2)
+        On the inner ring in these planes, N m.
+    inner_slices, outer_slices : ndarray (m, Z, n)
+        Load of each slice, N, from the end that lies back along the axis on.
+    stiffness : ndarray (m, 5, 5)
+        Derivative of forces and moments by displacements and tilts of the inner ring.
+    imbalance : float
+        Force that is left out of balance, over the load, or over what the interference or the centrifugal
+        force of a roller presses if that is more.
+    """
+
+    bearing: RollerBearing
+    radial: float
+    axial: float
+    speed: float
+    azimuth: Array
+    displacement: Array
+    moment: Array
+    inner_slices: Array
+    outer_slices: Array
+    stiffness: Array
+    imbalance: float
+
+    @property
+    def inner_load(self) -> Array:
+        """Loads of the contacts with the inner ring (m, Z), N."""
+        return np.asarray(self.inner_slices.sum(axis=-1))
+
+    @property
+    def outer_load(self) -> Array:
+        """Loads of the contacts with the outer ring (m, Z), N."""
+        return np.asarray(self.outer_slices.sum(axis=-1))
+
+    @property
+    def inner_pressure(self) -> Array:
+        """Largest pressures along the rollers at the inner ring (m, Z), Pa."""
+        return np.asarray(self.bearing.inner_contact.pressures(self.inner_slices).max(axis=-1))
+
+    @property
+    def outer_pressure(self) -> Array:
+        """Largest pressures along the rollers at the outer ring (m, Z), Pa."""
+        return np.asarray(self.bearing.outer_contact.pressures(self.outer_slices).max(axis=-1))
+
+    @property
+    def carrying_length(self) -> Array:
+        """Length of each roller that touches the inner ring (m, Z), m."""
+        share = np.count_nonzero(self.inner_slices, axis=-1) / self.bearing.slices
+        return np.asarray(self.bearing.roller_length * share)
+
+    @property
+    def touching(self) -> Array:
+        """How many rollers touch the inner ring, at each angle of the cage (m,)."""
+        return np.asarray(np.count_nonzero(self.inner_load, axis=1), dtype=float)
+
+
+def roller_load_distribution(
+    bearing: RollerBearing,
+    radial: float,
+    axial: float,
+    *,
+    tilt: ArrayLike | None,
+    moment: ArrayLike | None,
+    speed: float,
+    cage_angles: ArrayLike | None,
+) -> LoadedRollers:
+    """Solve for the load distribution and doubt it, see `RollerBearing.loaded`."""
+    radial = not_negative("radial load (N)", radial)
+    axial = not_negative("axial load (N)", axial)
+    speed = not_negative("speed (1/s)", speed)
+    both = tilt is not None and moment is not None
+    require(not both, "load", "both tilt and moment", "one of them", "Remove one.")
+    tilted = _both_planes("tilt (rad)", tilt, largest=0.1)
+    moments = _both_planes("moment (N m)", moment)
+    carried = bearing.contact_angle > 0.0 or axial == 0.0
+    allowed = "0 N where contact_angle is 0: such rollers slide axially"
+    require(carried, "axial load", f"{rounded(axial, 4)} N", allowed, "Ribs are not in it.")
+    turned = bool(moments.any() or tilted.any())
+    held = radial + axial > 0.0 or turned or bearing.clearance < 0.0
+    remedy = "Without one the inner ring is loose."
+    require(held, "load", "none", "a radial or axial load, a moment, a tilt or an interference", remedy)
+    if cage_angles is None:
+        cage_angles = 2.0 * math.pi / bearing.rollers * np.arange(STEPS) / STEPS
+    angles = finite_array("angles of the cage (rad)", np.atleast_1d(np.asarray(cage_angles)), shape=(None,))
+    load = np.array([radial, 0.0, axial, *moments])
+    prescribed = tilted if moment is None else None
+    try:
+        found = _solved(bearing, load, prescribed, speed, angles)
+    except ComputationError as error:
+        received = f"{rounded(radial, 4)} N radial and {rounded(axial, 4)} N axial: {error.what}"
+        remedy = f"Try {error.remedy}."
+        raise InputError("load", received, "what the rollers carry", remedy) from error
+    _doubt(found)
+    return found
+
+
+def _both_planes(what: str, given: ArrayLike | None, *, largest: float = math.inf) -> Array:
+    """Tilts or moments in the plane of the load and across it; one number is that in the plane."""
+    values = np.zeros(2) if given is None else np.atleast_1d(np.asarray(given))
+    if values.shape == (1,):
+        values = np.append(values, 0.0)
+    allowed = "a number, or two: in the plane of the load and across it"
+    if math.isfinite(largest):
+        allowed += f", below {largest:g} rad"
+    values = finite_array(what, values, allowed, shape=(2,))
+    require(np.abs(values).max() < largest, what, float(np.abs(values).max()), allowed, "Is the unit right?")
+    return values
+
+
+@dataclass(frozen=True)
+class _Rollers:
+    """What rollers do between raceways that overlap by a stretch (…, 2): approach, and tilt times L/2, m."""
+
+    inner: SlicedContact
+    outer: SlicedContact
+    lift: float  # centrifugal force along the normal of the contacts, N
+
+    @property
+    def lever(self) -> float:
+        """Half the length, m, by which tilts are lengths and moments are forces."""
+        return 0.5 * self.inner.length
+
+    def _pressed(self, contact: SlicedContact, overlap: Array) -> tuple[Array, Array, Array]:
+        """Energy, force (…, 2) and stiffness (…, 2, 2) of one contact."""
+        found = contact.pressed(overlap[..., 0], overlap[..., 1] / self.lever)
+        scales = np.array([1.0, 1.0 / self.lever])
+        force = np.stack([found.force, found.moment], axis=-1) * scales
+        return found.energy, force, found.stiffness * scales[:, None] * scales
+
+    def together(self, stretch: Array) -> tuple[Array, Array, Array, Array]:
+        """Energy, force (…, 2), stiffness (…, 2, 2), and overlap of the outer contacts (…, 2)."""
+        if self.lift == 0.0:
+            # both contacts are alike: the roller is in the middle
+            outer = 0.5 * stretch
+            energy, force, stiffness = self._pressed(self.inner, outer)
+            return 2.0 * energy, force, 0.5 * stiffness, outer
+        free = np.array([self.outer.approach(self.lift), 0.0])
+        start = np.maximum(0.5 * stretch, 0.0) * [1.0, 0.0] + 0.5 * free
+        scale = self.lift + float(self._pressed(self.inner, 0.5 * stretch)[1].max())
+        outer, _ = least_energy(lambda at: self._apart(stretch, at), start, scale, "balance of a roller")
+        energy, force, stiffness = self._pressed(self.inner, stretch - outer)
+        below = self._pressed(self.outer, outer)
+        sum_of = stiffness + below[2]
+        ridge = 1e-12 * np.trace(sum_of, axis1=-2, axis2=-1)[..., None, None] * np.eye(2)
+        condensed = stiffness - stiffness @ np.linalg.solve(sum_of + ridge, stiffness)
+        return energy + below[0] - self.lift * outer[..., 0], force, condensed, outer
+
+    def _apart(self, stretch: Array, outer: Array) -> tuple[Array, Array, Array]:
+        """Energy of rollers that overlap the outer raceway by so much, its gradient and Hessian."""
+        above = self._pressed(self.inner, stretch - outer)
+        below = self._pressed(self.outer, outer)
+        gradient = below[1] - above[1] - self.lift * np.array([1.0, 0.0])
+        return above[0] + below[0] - self.lift * outer[..., 0], gradient, above[2] + below[2]
+
+
+def _solved(
+    bearing: RollerBearing, load: Array, tilt: Array | None, speed: float, angles: Array
+) -> LoadedRollers:
+    """The inner ring in balance at each angle of the cage; tilted as it is told, or as moments tilt it."""
+    azimuth = angles[:, None] + 2.0 * math.pi / bearing.rollers * np.arange(bearing.rollers)
+    moved = _followed(bearing, azimuth)
+    lift = bearing.centrifugal_force(speed) * math.cos(bearing.contact_angle)
+    inner, outer = bearing.inner_contact, bearing.outer_contact
+    overlap = 0.5 * max(-bearing.clearance, 0.0)
+    scale = max(load[0], load[2], float(np.abs(load[MOMENTS]).max()) / (0.5 * bearing.roller_length))
+    scale = max(scale, inner.force(0.5 * overlap))
+    rollers = _Rollers(inner, outer, lift if lift > TOLERANCE * scale else 0.0)
+    levers = np.array([1.0, 1.0, 1.0, rollers.lever, rollers.lever])
+    moved = moved / levers  # tilts of the ring as ways at half a length of a roller
+    rest = np.array([-0.5 * bearing.clearance * math.cos(bearing.contact_angle), 0.0])
+    start = np.zeros((len(angles), 5))
+    if tilt is not None:
+        start[:, MOMENTS] = tilt * levers[MOMENTS]
+        rest = rest + np.einsum("mzik,mk->mzi", moved, start)
+        scale = max(scale, float(rollers.together(rest)[1].max()))
+    pressed = 2.0 * inner.approach(5.0 * load[FORCES].max() / bearing.rollers)
+    start[:, 0] = (max(0.5 * bearing.clearance, 0.0) + pressed) * (load[0] > 0.0)
+    sine = math.sin(bearing.contact_angle)
+    if sine:
+        start[:, 2] = (max(0.5 * bearing.clearance, 0.0) + pressed) / sine
+    free = [0, 1] + [2] * bool(sine) + [3, 4] * (tilt is None)
+    force = load / levers
+
+    def energy_of(ring: Array) -> tuple[Array, Array, Array]:
+        stretch = rest + np.einsum("mzik,mk->mzi", moved[..., free], ring)
+        energy, pulled, stiffness, _ = rollers.together(stretch)
+        gradient = np.einsum("mzik,mzi->mk", moved[..., free], pulled) - force[free]
+        hessian = np.einsum("mzik,mzij,mzjl->mkl", moved[..., free], stiffness, moved[..., free])
+        return energy.sum(-1) - ring @ force[free], gradient, hessian
+
+    ring, imbalance = least_energy(energy_of, start[:, free], max(scale, lift), "balance of the inner ring")
+    stretch = rest + np.einsum("mzik,mk->mzi", moved[..., free], ring)
+    _, pulled, stiffness, below = rollers.together(stretch)
+    start[:, free] = ring
+    above = stretch - below
+    slices = [
+        contact.pressed(at[..., 0], at[..., 1] / rollers.lever).loads
+        for contact, at in ((inner, above), (outer, below))
+    ]
+    whole = np.einsum("mzik,mzij,mzjl->mkl", moved, stiffness, moved)
+    return LoadedRollers(
+        bearing, float(load[0]), float(load[2]), speed, azimuth,
+        start / levers,
+        np.einsum("mzik,mzi->mk", moved, pulled)[:, MOMENTS] * levers[MOMENTS],
+        slices[0], slices[1],
+        whole * levers[:, None] * levers,
+        imbalance,
+    )  # fmt: skip
+
+
+def _followed(bearing: RollerBearing, azimuth: Array) -> Array:
+    """How approach and tilt times L/2 of rollers (…, 2) follow the inner ring (…, 2, 5).
+
+    A tilt γ at an azimuth moves the ring axially by R γ where it is R from the axis, and outwards by −x γ
+    where it is x along the axis.
+    """
+    cosine = math.cos(bearing.contact_angle)
+    sine = math.sin(bearing.contact_angle)
+    around = np.stack([np.cos(azimuth), np.sin(azimuth)], axis=-1)
+    moved = np.zeros((*azimuth.shape, 2, 5))
+    moved[..., 0, 0:2] = cosine * around
+    moved[..., 0, 2] = sine
+    moved[..., 0, 3:5] = 0.5 * bearing.pitch_diameter * sine * around
+    moved[..., 1, 3:5] = -0.5 * bearing.roller_length * around
+    return moved
+
+
+def _doubt(found: LoadedRollers) -> None:
+    """Refuse or warn of contacts that are no lines, of dents, of crownings too deep, of sharp ends."""
+    of = found.bearing
+    for ring, contact, slices in (
+        ("inner", of.inner_contact, found.inner_slices),
+        ("outer", of.outer_contact, found.outer_slices),
+    ):
+        peak = float(contact.pressures(slices).max())
+        width = 2.0 * peak / contact.modulus
+        received = f"half a width of {rounded(width, 2)} radii on the {ring} ring"
+        allowed = f"at most {STEEPEST:g}, where the roller is an elastic half-space"
+        require(width <= STEEPEST, "contact", received, allowed, "Lower the load or the tilt.")
+        limit = min(STATIC_PRESSURE, of.hardness)
+        if peak > limit:
+            hard = peak > of.hardness
+            means = "the hardness: the rings flow" if hard else "where dents begin (ISO 76)"
+            told = f"Rollers press the {ring} ring with {rounded(peak / 1e9)} GPa, above {limit / 1e9:g} GPa"
+            grade = Grade.OUT if hard else Grade.WARNING
+            OutOfRangeWarning.warn(f"{told}, {means}. Lower the load or the tilt.", grade)
+    _doubt_crowning(found)
+
+
+def _doubt_crowning(found: LoadedRollers) -> None:
+    of = found.bearing
+    heaviest = np.unravel_index(int(found.inner_load.argmax()), found.inner_load.shape)
+    slices = found.inner_slices[heaviest]
+    share = np.count_nonzero(slices) / of.slices
+    if 0.0 < share < LEAST_LENGTH:
+        contact = of.inner_contact
+        deep = rounded(float(contact.drops.max()) * 1e6)
+        pressed = rounded(contact.approach(float(slices.sum())) * 1e6)
+        OutOfRangeWarning.warn(
+            f"Only {percent(share)} of the length of the roller that carries most, "
+            f"{rounded(slices.sum(), 4)} N, touches: its crowning, {deep} µm at the outermost slice, is "
+            f"deeper than an approach of {pressed} µm and the tilt bring to bear. Take a shallower crowning, "
+            "less tilt, or a larger load."
+        )
+    if of.crowning == "logarithmic":
+        return
+    pressures = of.inner_contact.pressures(found.inner_slices)
+    at_end = float(pressures[..., [0, -1]].max() / max(float(pressures.max()), 1e-300))
+    if at_end > SHARP:
+        OutOfRangeWarning.warn(
+            f"The ends of {of.crowning} rollers carry {percent(at_end)} of the largest pressure: slices know "
+            "no edge, where the pressure is higher. Take a logarithmic crowning, or solve the contact.",
+            Grade.NOTE,
+        )

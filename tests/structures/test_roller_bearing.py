@@ -1,0 +1,228 @@
+"""A roller bearing at rest: printed load distributions, closed forms, another solution; what turns."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import least_squares
+
+from asperity import RollerBearing
+from asperity.errors import OutOfRangeWarning
+from asperity.reference.materials import Material
+from refusals import refusals
+
+NU205 = RollerBearing.named("NU205")
+ISO_STEEL = Material("steel of ISO/TS 16281", 207e9, 0.3, 7850.0)
+MANY = RollerBearing(200, 1e-3, 1e-3, 80e-3, crowning="cylindrical")
+TAPERED = RollerBearing(15, 7e-3, 10e-3, 45e-3, contact_angle=0.25)
+OF_ENDS = "ignore:The ends of cylindrical rollers"
+
+SJOVALL = {
+    0.1: 0.1268, 0.2: 0.1737, 0.3: 0.2055, 0.4: 0.2286, 0.5: 0.2453,
+    0.6: 0.2568, 0.7: 0.2636, 0.8: 0.2658, 0.9: 0.2628, 1.0: 0.2523,
+}  # fmt: skip
+"""J_r over the load zone ε for line contacts, as it is printed in textbooks and makers' handbooks."""
+
+
+# --- at rest
+
+
+@pytest.mark.filterwarnings(OF_ENDS)
+@pytest.mark.parametrize(("zone", "printed"), SJOVALL.items())
+def test_many_rollers_carry_a_radial_load_as_sjovalls_integral(zone, printed):
+    """ε = (1 − P_d/2x)/2, and F = Z Q J_r of the load Q of the roller that carries most."""
+    heaviest = 5.0
+    approach = 2.0 * MANY.inner_contact.approach(heaviest)
+    moved = approach / (2.0 * zone)  # approach = x − P_d/2 = 2 ε x
+    bearing = MANY.with_(clearance=2.0 * moved * (1.0 - 2.0 * zone))
+    found = bearing.loaded(radial=bearing.rollers * heaviest * printed, cage_angles=[0.0])
+    assert found.inner_load.max() == pytest.approx(heaviest, rel=6e-3)
+    assert found.displacement[0, 0] == pytest.approx(moved, rel=6e-3)
+
+
+@pytest.mark.filterwarnings(OF_ENDS)
+def test_at_half_a_load_zone_axial_and_radial_load_are_as_printed():
+    """NSK, CAT. E728g, 5.1: F_a = 1.260 F_r tan α, Q = 4.08 F_r/(Z cos α), of line contacts."""
+    angle, radial = 0.2, 300.0
+    bearing = MANY.with_(contact_angle=angle)
+    found = bearing.loaded(radial, 1.260 * radial * math.tan(angle), cage_angles=[0.0])
+    assert found.touching[0] == pytest.approx(100, abs=2)
+    assert found.inner_load.max() == pytest.approx(4.08 * radial / (200 * math.cos(angle)), rel=1e-3)
+
+
+def test_under_an_axial_load_all_rollers_share_it():
+    found = TAPERED.loaded(axial=3000.0)
+    assert found.inner_load == pytest.approx(3000.0 / (15 * math.sin(0.25)), rel=1e-9)
+    assert found.outer_load == pytest.approx(found.inner_load, rel=1e-12)
+
+
+def slices_of_the_standard(approach, tilt, bearing):
+    """Loads of slices (Z, n), N, as ISO/TS 16281 writes them: of N and mm, the profile twice."""
+    length, n = 1e3 * bearing.roller_length, bearing.slices
+    places = length * ((np.arange(n) + 0.5) / n - 0.5)
+    profile = 0.00035 * 1e3 * bearing.roller_diameter * np.log(1.0 / (1.0 - (2.0 * places / length) ** 2))
+    overlap = np.maximum(1e3 * approach[:, None] - places * np.tan(tilt[:, None]) - 2.0 * profile, 0.0)
+    return 35948.0 * length ** (8 / 9) / n * overlap ** (10 / 9)
+
+
+def test_loads_along_the_rollers_are_those_of_the_standard():
+    bearing = NU205.with_(material=ISO_STEEL, roller_material=ISO_STEEL)
+    found = bearing.loaded(2000.0, tilt=(1e-3, 4e-4), cage_angles=[0.1])
+    psi = found.azimuth[0]
+    along, across = found.displacement[0, :2]
+    approach = along * np.cos(psi) + across * np.sin(psi) - 0.5 * bearing.clearance
+    tilt = 1e-3 * np.cos(psi) + 4e-4 * np.sin(psi)
+    loads = slices_of_the_standard(approach, tilt, bearing)
+    np.testing.assert_allclose(found.inner_slices[0], loads, rtol=1e-5, atol=1e-5)
+    assert loads.sum(1) @ np.cos(psi) == pytest.approx(2000.0, rel=1e-6)
+    assert loads.sum(1) @ np.sin(psi) == pytest.approx(0.0, abs=1e-3)
+    places = bearing.inner_contact.places
+    turning = -(loads @ places) @ np.column_stack([np.cos(psi), np.sin(psi)])
+    assert found.moment[0] == pytest.approx(turning, rel=1e-5)
+
+
+def out_of_balance(state, bearing, load, lift, azimuth):
+    """Newtons and newton metres that are missing at the inner ring and at each roller, from coordinates."""
+    ring = state[:5] * [1e-5, 1e-5, 1e-5, 1e-3, 1e-3]
+    outwards, turned = (state[5:].reshape(-1, 2) * [1e-5, 1e-3]).T[..., None]  # along the normal, and tilt
+    cosine, sine = math.cos(bearing.contact_angle), math.sin(bearing.contact_angle)
+    x, drops = bearing.inner_contact.places, bearing.inner_contact.drops
+    constant = bearing.inner_contact.stiffness_constant / bearing.slices
+    around = np.array([np.cos(azimuth), np.sin(azimuth)])
+    tilt = (ring[3:] @ around)[:, None]
+    # a point at x along a roller: how far from the axis, and along it
+    radius, along = 0.5 * bearing.pitch_diameter - x * sine, x * cosine
+    out = (ring[:2] @ around)[:, None] - along * tilt
+    normal = cosine * out + sine * (ring[2] + radius * tilt) - 0.5 * bearing.clearance * cosine
+    roller = outwards + x * turned
+    inner = constant * np.maximum(normal - roller - drops, 0.0) ** (10 / 9)
+    outer = constant * np.maximum(roller - drops, 0.0) ** (10 / 9)
+    push, turning = inner.sum(1), inner @ (sine * radius - cosine * along)
+    ring_met = [*(around @ push * cosine), sine * push.sum(), *(around @ turning)]
+    on_rollers = [push + lift * cosine - outer.sum(1), 1e3 * (inner - outer) @ x]
+    return np.concatenate([(np.array(load) - ring_met) * [1, 1, 1, 1e3, 1e3], *on_rollers])
+
+
+@pytest.mark.parametrize(("bearing", "load", "speed"), [
+    (NU205.with_(rollers=7), (1500.0, 0.0, 0.0, 0.3, 0.1), 0.0),
+    (NU205.with_(rollers=5), (700.0, 0.0, 0.0, 0.2, 0.0), 400.0),
+    (TAPERED.with_(rollers=5, crowning="circular", crowning_drop=4e-6), (400.0, 0.0, 900.0, 2.0, 1.0), 300.0),
+])  # fmt: skip
+def test_it_is_in_balance_by_another_solution(bearing, load, speed):
+    """Of all coordinates at once, from forces alone: clearance, crowning, moments, centrifugal force."""
+    found = bearing.loaded(load[0], load[2], moment=load[3:], speed=speed, cage_angles=[0.2])
+    cage = 2.0 * np.pi * bearing.kinematics(speed).cage
+    mass = np.pi / 4.0 * bearing.roller_diameter**2 * bearing.roller_length * 7850.0
+    lift = mass * 0.5 * bearing.pitch_diameter * cage**2
+    azimuth = found.azimuth[0]
+    start = np.zeros(5 + 2 * bearing.rollers)
+    start[:5] = found.displacement[0] / [1e-5, 1e-5, 1e-5, 1e-3, 1e-3] * [1.1, 1.0, 0.95, 0.9, 1.1]
+    start[5::2] = 1.0
+    other = least_squares(out_of_balance, start, args=(bearing, load, lift, azimuth), xtol=1e-13, gtol=1e-13)
+    assert np.abs(other.fun).max() < 1e-4
+    moved = other.x[:5] * [1e-5, 1e-5, 1e-5, 1e-3, 1e-3]
+    free = [0, 1, 3, 4] if bearing.contact_angle == 0.0 else range(5)
+    np.testing.assert_allclose(moved[free], found.displacement[0][free], rtol=1e-4, atol=1e-9)
+    assert found.outer_load.min() >= 0.999 * lift * math.cos(bearing.contact_angle)
+
+
+@pytest.mark.parametrize(("bearing", "speed"), [(NU205, 0.0), (TAPERED, 200.0)])
+def test_its_stiffness_is_what_a_little_more_load_meets(bearing, speed):
+    loads = np.array([1500.0, 0.0, 1200.0 * (bearing is TAPERED), 0.5, 0.0])
+    free = [0, 1, 3, 4] if bearing is NU205 else list(range(5))
+
+    def at(change):
+        radial, _, axial, *moment = loads + change
+        return bearing.loaded(radial, axial, moment=moment, speed=speed, cage_angles=[0.1]).displacement[0]
+
+    found = bearing.loaded(loads[0], loads[2], moment=loads[3:], speed=speed, cage_angles=[0.1])
+    stiffness = found.stiffness[0][np.ix_(free, free)]
+    for column, more in ((0, 1e-1), (3, 1e-4)):
+        change = np.zeros(5)
+        change[column] = more
+        moved = (at(change) - at(-change)) / (2.0 * more)
+        unit = np.zeros(5)
+        unit[column] = 1.0
+        np.testing.assert_allclose(stiffness @ moved[free], unit[free], atol=2e-3)
+    np.testing.assert_allclose(found.stiffness[0], found.stiffness[0].T, rtol=1e-9)
+
+
+def test_a_tilt_presses_the_ends_that_lie_back_where_the_load_points():
+    found = NU205.loaded(2000.0, tilt=2e-3, cage_angles=[0.0])
+    straight = NU205.loaded(2000.0, cage_angles=[0.0])
+    assert found.inner_slices[0, 0, 0] > found.inner_slices[0, 0, -1] == 0.0
+    assert found.moment[0, 0] > 0.0 == pytest.approx(straight.moment[0, 0], abs=1e-9)
+    assert found.inner_pressure.max() > straight.inner_pressure.max()
+    assert found.carrying_length.max() < straight.carrying_length.max() <= NU205.roller_length
+
+
+def test_the_static_load_rating_is_that_of_iso_76():
+    """C₀ = 44 (1 − γ) Z L D in N and mm is 27 kN in catalogues; 4 GPa under Q = 5 C₀/Z."""
+    rating = 44.0 * (1.0 - 7.5 / 39.0) * 13 * 7.8 * 7.5
+    assert rating == pytest.approx(27e3, rel=0.01)
+    contact = NU205.with_(crowning="cylindrical").inner_contact
+    assert contact.peak_pressure(contact.approach(5.0 * rating / 13)) == pytest.approx(4.0e9, rel=0.03)
+
+
+# --- what turns
+
+
+def test_multiples_of_the_speed_are_those_of_the_kinematics_of_rolling():
+    """Raceways of 31.5 and 46.5 mm roll on rollers of 7.5 mm: no slip at either contact."""
+    assert NU205.raceway_radii == pytest.approx((15.75e-3, 23.25e-3))
+    turning = NU205.kinematics(1.0)
+    surface = 2.0 * np.pi * 3.75e-3 * turning.spin
+    assert 2.0 * np.pi * 23.25e-3 * turning.cage == pytest.approx(surface)
+    assert 2.0 * np.pi * 15.75e-3 * (1.0 - turning.cage) == pytest.approx(surface)
+    assert turning.ball_pass_outer == pytest.approx(13 * 0.5 * (1.0 - 7.5 / 39.0))
+    assert NU205.with_(turning="outer").kinematics(1.0).cage == pytest.approx(1.0 - turning.cage)
+
+
+# --- what cannot be
+
+
+test_geometries_that_do_not_close = refusals(
+    ({"rollers": 17}, r"rollers: received 17 of 7.5 mm on a pitch diameter of 39 mm; .* at most 7.166"),
+    ({"rollers": 2}, "a whole number at least 3"),
+    ({"clearance": 1e-3}, r"clearance: received 1000 µm; allowed: less than 750 µm"),
+    ({"crowning": "round"}, 'crowning of the roller bearing: received .*"cylindrical"'),
+    ({"crowning": "cylindrical", "crowning_drop": 1e-6}, "drop of the crowning: received 1 µm"),
+    ({"crowning_straight": 1e-3}, "straight middle of the crowning: received 1 mm"),
+    ({"slices": 5}, "slices of the roller bearing: received 5"),
+    ({"contact_angle": 1.5}, "contact_angle of the roller bearing"),
+    of=lambda changes: NU205.with_(**changes),
+)
+test_loads_that_cannot_be = refusals(
+    ({}, "load: received none; allowed: a radial or axial load, a moment, a tilt or an interference"),
+    ({"radial": -1.0}, "radial load"),
+    ({"radial": 1.0, "axial": 1.0}, "axial load: received 1 N; allowed: 0 N where contact_angle is 0"),
+    ({"radial": 1.0, "tilt": 0.0, "moment": 0.0}, "load: received both tilt and moment"),
+    (
+        {"radial": 1.0, "tilt": 1.0},
+        r"tilt \(rad\): received 1.0; allowed: a number, or two.*below 0.1 rad.*unit",
+    ),
+    ({"radial": 1.0, "moment": [1.0, 2.0, 3.0]}, "moment (N m)"),
+    (
+        {"radial": 300e3},
+        "contact: received half a width of 0.21 radii on the inner ring; allowed: at most 0.1",
+    ),
+    ({"radial": 1.0, "cage_angles": ["a"]}, "angles of the cage"),
+    of=lambda load: NU205.loaded(**load),
+)
+
+
+def test_the_name_of_a_bearing_is_known():
+    with pytest.raises(Exception, match=r"bearing: received 'NU209'; allowed: one of .*NU205"):
+        RollerBearing.named("NU209")
+
+
+def test_doubts_are_told():
+    deep = NU205.with_(crowning="circular", crowning_drop=100e-6)
+    with pytest.warns(OutOfRangeWarning, match=r"Only \d+ % of the length .* is deeper than an approach of"):
+        deep.loaded(radial=500.0)
+    with pytest.warns(OutOfRangeWarning, match="ends of cylindrical rollers carry 100 % of the largest"):
+        NU205.with_(crowning="cylindrical").loaded(radial=500.0)
+    with pytest.warns(OutOfRangeWarning, match=r"ring with 4.\d+ GPa, above 4 GPa, where dents begin"):
+        NU205.loaded(radial=45e3)
+    with pytest.warns(OutOfRangeWarning, match=r"with 1.\d+ GPa, above 1 GPa, the hardness: the rings flow"):
+        NU205.with_(hardness=1e9).loaded(radial=1500.0)
