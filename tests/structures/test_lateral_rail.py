@@ -27,26 +27,33 @@ STRAIGHT = {"centroid_height": 0.0, "foot_depth": 0.0}  # bends and twists by it
 
 
 def free_receptance(track, omega, x):
-    """Of the rail without supports at distances (n,), (n, 2, 2, f)."""
+    """Of the rail without supports at distances (n,), (n, m, m, f)."""
     free = track.free_waves(omega)
     run = np.exp(-1j * free.wavenumbers * np.abs(x)[:, None, None])
     return np.einsum("if,aif,bif,nif->nabf", free.amplitudes, free.shapes, free.shapes, run)
 
 
-@pytest.mark.parametrize("place", [(0.1, 0.1), (0.35, 1.9), (1.5, 0.05)])
-def test_the_waves_are_the_superposition_of_many_supports(place):
+WEB = {"web_thickness": 16.5e-3}  # bends
+
+
+@pytest.mark.parametrize(
+    ("place", "web"), [((0.1, 0.1), {}), ((0.35, 1.9), {}), ((1.5, 0.05), {}), ((1.5, 0.05), WEB)]
+)
+def test_the_waves_are_the_superposition_of_many_supports(place, web):
     """A linear system of the reactions of 121 supports, the last of them where the rail is at rest."""
-    track, (x, x0), reach = LateralTrack(LOSSY), place, 60
+    track, (x, x0), reach = LateralTrack(LOSSY, **web), place, 60
     omega, bay = 2.0 * np.pi * FREQUENCIES[1:] + 0j, LOSSY.sleeper_spacing
     at = bay * np.arange(-reach, reach + 1)
     stiffness = track.support(omega)
     between = free_receptance(track, omega, (at[:, None] - at).ravel())
-    count, expected = len(at), np.empty((2, 2, len(omega)), complex)
+    count, moves = len(at), len(stiffness)
+    expected = np.empty((moves, moves, len(omega)), complex)
     sent, heard = (free_receptance(track, omega, at - each) for each in (x0, x))
     for line in range(len(omega)):
-        answer = between[..., line].reshape(count, count, 2, 2) @ stiffness[..., line]
-        system = np.eye(2 * count) + answer.transpose(0, 2, 1, 3).reshape(2 * count, -1)
-        moved = np.linalg.solve(system, sent[..., line].reshape(-1, 2)).reshape(count, 2, 2)
+        answer = between[..., line].reshape(count, count, moves, moves) @ stiffness[..., line]
+        size = moves * count
+        system = np.eye(size) + answer.transpose(0, 2, 1, 3).reshape(size, -1)
+        moved = np.linalg.solve(system, sent[..., line].reshape(-1, moves)).reshape(count, moves, moves)
         reaction = stiffness[..., line] @ moved
         direct = free_receptance(track, omega[[line]], np.array([x - x0]))[0, ..., 0]
         expected[..., line] = direct - np.sum(heard[..., line] @ reaction, axis=0)
@@ -122,13 +129,14 @@ def test_decay_rates_are_those_of_a_beam_on_an_elastic_layer():
         assert track.decay_rate(f)[0] == pytest.approx(8.685889638 * least, rel=2e-3)
 
 
-def test_a_rail_that_lies_all_along_is_the_limit_of_short_bays():
+@pytest.mark.parametrize("web", [{}, WEB], ids=["keeps its form", "web bends"])
+def test_a_rail_that_lies_all_along_is_the_limit_of_short_bays(web):
     even = replace(LOSSY, continuous=True)
     short = replace(LOSSY, sleeper_spacing=LOSSY.sleeper_spacing / 40)
     softer = {f"{part}_stiffness": getattr(LOSSY, f"{part}_stiffness") / 40 for part in ("pad", "ballast")}
     short = replace(short, sleeper_mass=LOSSY.sleeper_mass / 40, **softer)
     omega = 2.0 * np.pi * np.array([60.0, 300.0, 1200.0, 4000.0])
-    found, limit = (LateralTrack(each).answers(omega, 0.0, 0.9, 0.01) for each in (even, short))
+    found, limit = (LateralTrack(each, **web).answers(omega, 0.0, 0.9, 0.01) for each in (even, short))
     assert_allclose(found, limit, rtol=2e-3)
 
 

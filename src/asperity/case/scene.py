@@ -473,6 +473,7 @@ class Case(AnyCase):
         if isinstance(self.rolled_over, TrackKeys):
             yield from self.noise.problems_of_train(self.contacts_behind)
             yield from self._problem_of_place()
+            yield from self._problem_of_web()
             return
         for dotted in OF_A_TRACK:
             title, _, name = dotted.partition(".")
@@ -505,6 +506,14 @@ class Case(AnyCase):
             allowed = f"at most {written(half, 'm', 'mm')} off the middle"
             remedy = "The rail head, track.rail_head_width, is no wider."
             yield InputError("sideways.contact_place", received, allowed, remedy)
+
+    def _problem_of_web(self) -> Iterator[InputError]:
+        """A rail whose web bends, if one is told, has a section that can be."""
+        if "sideways" in self.inner and self.sideways.is_active("web_height"):
+            try:
+                self.sideways.model(self.track.model().regular, self.track.rail_foot_width)
+            except InputError as error:
+                yield error.about(f"sideways: {error.what}")
 
 
 def _allowed(*, line: bool, samples: bool = True) -> list[str]:

@@ -313,16 +313,13 @@ def squared_lateral_mobility(
     omega = 2.0 * np.pi * above_zero(frequency)
     waves = track.waves(omega)
     spacing = track.track.sleeper_spacing
-    low = -track.foot_depth
-    high = track.head_height
-    slope = 0.5 * (high + low)
-    height = np.array([[1.0, slope], [slope, (high**2 + high * low + low**2) / 3.0]])
+    height = track.mean_squares
     count = FEWEST_NODES + int(np.ceil(np.abs(waves.wavenumbers).max() * spacing))
     node, weight = (0.5 * each for each in np.polynomial.legendre.leggauss(count))
     node = node + 0.5
 
     def within(moved: Complex, length: float) -> Complex:
-        """Integral over a piece of the products of motions (x, 2, i, f) at its nodes, (i, j, f)."""
+        """Integral over a piece of the products of motions (x, m, i, f) at its nodes, (i, j, f)."""
         total = np.einsum("x,xaif,ab,xbjf->ijf", weight, moved.conj(), height, moved, optimize=True)
         return np.asarray(length * total)
 

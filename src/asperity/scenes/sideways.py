@@ -24,8 +24,8 @@ PLACES = 12
 
 SOURCES = (
     "sideways: the rail as in D. Kostovasilis, D. J. Thompson and M. F. M. Hussein, J. Sound Vib. 2017, doi "
-    "10.1016/j.jsv.2016.12.033, without warping; where the case gives no other, UIC 60 and a third of the "
-    "pad stiffness as in the program rolland; friction of 0.3 chosen here.",
+    "10.1016/j.jsv.2016.12.033, without warping unless its web bends; where the case gives no other, UIC 60 "
+    "and a third of the pad stiffness as in the program rolland; friction of 0.3 chosen here.",
     "R. D. Mindlin, J. Appl. Mech. 16 (1949) 259 (contact in stick).",
 )
 

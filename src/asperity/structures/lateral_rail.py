@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, Complex, finite_array, positive
-from asperity.parameters import Quantity, checked_parameters, parameter
-from asperity.structures import modal, periodic_rail
+from asperity.arguments import Array, ArrayLike, Complex, finite_array
+from asperity.structures import modal, periodic_rail, rail_web
+from asperity.structures.lateral_parameters import LateralParameters
 from asperity.structures.track import (
     EN_15461_BAYS,
     VANISHING_DAMPING,
@@ -17,26 +17,17 @@ from asperity.structures.track import (
 )
 from asperity.structures.wheel_modes import WheelModes
 
-# UIC 60 as in the program rolland: E = 210 GPa, G = 80.769 GPa, A = 76.7 cm², I_z = 512.7 cm⁴, J = 221.2 cm⁴,
-# I_p = 3550 cm⁴, lateral κ = 0.538, centre of twist 33 mm below the centroid, foot 81 mm below it
-_YOUNG = 210e9
-_SHEAR = 80.769e9
-_AREA = 76.7e-4
-_DENSITY = 60.2 / 76.7e-4
 THIRD = 1.0 / 3.0
 """Lateral stiffness of a pad over its vertical one."""
-_PADS, _RAILS = "pads lie between", "rails lie between"
-_STIFF, _HEAVY = f"100 N m^2 to 1 GN m^2: {_RAILS}", f"1e-6 kg m to 1000 kg m: {_RAILS}"
-_LONG = f"1 mm to 1 m: {_RAILS}"
 
 
 @dataclass(frozen=True, eq=False)
 class FreeWaves:
     """Receptance of a free infinite rail, sum over i of amplitude_i shape_i shape_iᵀ exp(−i k_i |x|)."""
 
-    wavenumbers: Complex  # (3, f), k_i, rad/m, Im k_i <= 0
-    shapes: Complex  # (2, 3, f), motion of the centre of twist, and twist, rad/m: one of both is 1
-    amplitudes: Complex  # (3, f), m/N where the first is 1, else rad/(N m)
+    wavenumbers: Complex  # (w, f), k_i, rad/m, Im k_i <= 0
+    shapes: Complex  # (m, w, f), motions, m, and twists, rad, of the section
+    amplitudes: Complex  # (w, f), for shapes in m and rad per N and N m
 
 
 def _roots(cubic: Complex) -> tuple[Complex, Complex]:
@@ -51,32 +42,33 @@ def _roots(cubic: Complex) -> tuple[Complex, Complex]:
 
 @dataclass(frozen=True, eq=False)
 class LateralWaves:
-    """The three Floquet waves of a rail that bends sideways and twists on equal supports, L apart.
+    """The Floquet waves of a rail that bends sideways and twists on equal supports, L apart.
 
-    Motion is that of the centre of twist, m, and twist, rad; forces on them are N and N m. With
+    Of a section that keeps its form there are w = 3, and m = 2 motions: of the centre of twist, m, and twist,
+    rad; of one whose web bends 6, and 4 of `asperity.structures.rail_web`. Forces on them are N and N m. With
     0 <= x0 <= L and x = p L + xi >= x0, the motion at x per force at x0 is sum_j coefficients_j
     multipliers_j**p outgoing(xi)_j incoming(x0)_jᵀ.
     """
 
-    multipliers: Complex  # (3, f), the change of wave j over one bay, |λ_j| < 1
-    coefficients: Complex  # (3, f)
-    wavenumbers: Complex  # (3, f), k_i of the free rail, rad/m
-    weights: Complex  # (2, 3, 3, f), motion by the free wave i in wave j, axes (motion, i, j, f)
+    multipliers: Complex  # (w, f), the change of wave j over one bay, |λ_j| < 1
+    coefficients: Complex  # (w, f)
+    wavenumbers: Complex  # (w, f), k_i of the free rail, rad/m
+    weights: Complex  # (m, w, w, f), motion by the free wave i in wave j, axes (motion, i, j, f)
     spacing: float  # L, m
 
     def outgoing(self, x: float) -> Complex:
-        """Shapes (2, 3, f) of the waves that decay towards growing x, 0 <= x <= L, m."""
+        """Shapes (m, w, f) of the waves that decay towards growing x, 0 <= x <= L, m."""
         return self._of(self.spacing - x) + self.multipliers * self._of(x)
 
     def incoming(self, x: float) -> Complex:
-        """Shapes (2, 3, f) of the waves that grow towards growing x, 0 <= x <= L, m."""
+        """Shapes (m, w, f) of the waves that grow towards growing x, 0 <= x <= L, m."""
         return self._of(self.spacing - x) + self._of(x) / self.multipliers
 
     def _of(self, x: float) -> Complex:
         return np.asarray(np.einsum("aijf,if->ajf", self.weights, np.sin(self.wavenumbers * x)))
 
     def receptance(self, x: float, x0: float) -> Complex:
-        """Motion at `x` per force at `x0`, (2, 2, f); positions from any support, m."""
+        """Motion at `x` per force at `x0`, (m, m, f); positions from any support, m."""
         first = min(x, x0)
         last = max(x, x0)
         start = np.floor(first / self.spacing)
@@ -87,15 +79,16 @@ class LateralWaves:
 
 
 def lateral_waves(free: FreeWaves, support: Complex, spacing: float) -> LateralWaves:
-    """Floquet waves of a rail on supports of dynamic stiffness K (2, 2, f), spacing m apart.
+    """Floquet waves of a rail on supports of dynamic stiffness K (m, m, f), spacing m apart.
 
     An `InputError` says if a free wave decays by more than exp(−200) in one bay.
 
     With the multiplier λ and c = (λ + 1/λ)/2 of a wave, the reactions r λ^n of the supports send out the
     free waves i α_i a_i (a_iᵀ r)/(cos k_i L − c) [sin k_i(L − x) + λ sin k_i x], and answer their motion:
     with z_i for the factor of a_i [ ], cos k_i L z_i + i α_i Σ_l a_iᵀ K a_l sin k_l L z_l = c z_i, an
-    eigenvalue problem of three. The superposition of all supports is the sum of the residues at its roots,
-    −2/((λ − 1/λ) Σ_i z_i² sin k_i L/(i α_i)), as in `asperity.structures.periodic_rail` for one motion.
+    eigenvalue problem of as many as there are free waves. The superposition of all supports is the sum of
+    the residues at its roots, −2/((λ − 1/λ) Σ_i z_i² sin k_i L/(i α_i)), as in
+    `asperity.structures.periodic_rail` for one motion.
     """
     phase = free.wavenumbers * spacing
     amplitude = 1j * free.amplitudes
@@ -103,7 +96,7 @@ def lateral_waves(free: FreeWaves, support: Complex, spacing: float) -> LateralW
     sine = np.sin(phase)
     shapes = free.shapes
     matrix = np.einsum("if,aif,abf,blf,lf->fil", amplitude, shapes, support, shapes, sine, optimize=True)
-    matrix += np.einsum("if,il->fil", np.cos(phase), np.eye(3))
+    matrix += np.einsum("if,il->fil", np.cos(phase), np.eye(len(phase)))
     c, z = np.linalg.eig(matrix)
     c = c.T
     z = np.moveaxis(z, 0, -1)  # (j, f), (i, j, f)
@@ -115,7 +108,7 @@ def lateral_waves(free: FreeWaves, support: Complex, spacing: float) -> LateralW
 
 
 @dataclass(frozen=True)
-class LateralTrack:
+class LateralTrack(LateralParameters):
     """A `Track` sideways: its rail, UIC 60 by default, on pads and half sleepers that move in the ballast.
 
     The rail bends by Timoshenko and twists by St Venant about its centre of twist, which moves centroid, head
@@ -132,10 +125,10 @@ class LateralTrack:
 
     Notes
     -----
-    Its section keeps its form: that above about 1.5 kHz head and foot move against each other, as the web
-    bends (T. X. Wu and D. J. Thompson, J. Acoust. Soc. Am. 106 (1999) 1369), is left out, and so is
-    restrained warping: lateral decay rates measured at 1.25 kHz were 2.5 to 4 times lower, most of it by the
-    web (docs/evidence/measured_railway.md). Pads and ballast lose as they do vertically, by the same share
+    Its section keeps its form, and warps freely, unless a `web_thickness` is given: then head and foot are
+    beams of their own and the web bends between them (`asperity.structures.rail_web`), which is most of why
+    lateral decay rates measured at 1.25 kHz were 2.5 to 4 times lower than those of a section that keeps its
+    form (docs/evidence/measured_railway.md). Pads and ballast lose as they do vertically, by the same share
     at every frequency; other springs below are as stiff as vertically. Sleepers move sideways as rigid bodies
     and do not roll. Bays are all nominal, and rail dampers are left out.
 
@@ -148,81 +141,51 @@ class LateralTrack:
     True
     """
 
-    track: Track
-    pad_stiffness: float | None = parameter(
-        Quantity("N/m", above=0), "100 MN/m", "lateral stiffness of a rail pad, which loses as vertically",
-        f"1 kN/m to 1 TN/m: {_PADS}", default=None, otherwise="a third of the vertical one",
-    )  # fmt: skip
-    pad_roll_stiffness: float | None = parameter(
-        Quantity("N m", above=0), "560 kN m",
-        "stiffness of a rail pad against roll of the rail, per rad, which loses as vertically",
-        f"1 N m to 1 GN m: {_PADS}", default=None, otherwise="that of an even pad as wide as the rail's foot",
-    )  # fmt: skip
-    ballast_stiffness: float | None = parameter(
-        Quantity("N/m", above=0), "150 MN/m",
-        "lateral stiffness of the ballast under half a sleeper, which loses as vertically",
-        "1 kN/m to 1 TN/m: ballast lies between", default=None, otherwise="the vertical one",
-    )  # fmt: skip
-    bending_stiffness: float = parameter(
-        Quantity("N m^2", above=0), "1.08 MN m^2", "lateral bending stiffness of the rail", _STIFF,
-        default=_YOUNG * 5.127e-6,
-    )  # fmt: skip
-    shear_stiffness: float = parameter(
-        Quantity("N", above=0, infinite=True), "333 MN",
-        'its lateral shear stiffness, "inf" for Euler-Bernoulli', f"1 kN to 1 TN: {_RAILS}",
-        default=_SHEAR * _AREA * 0.538,
-    )  # fmt: skip
-    rotary_inertia: float = parameter(
-        Quantity("kg m", at_least=0), "0.04 kg m", "its rotary inertia per length in lateral bending", _HEAVY,
-        default=_DENSITY * 5.127e-6,
-    )  # fmt: skip
-    torsional_stiffness: float = parameter(
-        Quantity("N m^2", above=0), "179 kN m^2", "torsional stiffness of the rail, G J", _STIFF,
-        default=_SHEAR * 2.212e-6,
-    )  # fmt: skip
-    polar_inertia: float = parameter(
-        Quantity("kg m", above=0), "0.28 kg m", "its polar inertia per length about its centroid", _HEAVY,
-        default=_DENSITY * 3.55e-5,
-    )  # fmt: skip
-    head_height: float = parameter(
-        Quantity("m", above=0), "124 mm", "height of the top of the rail above its centre of twist", _LONG,
-        default=0.124,
-    )  # fmt: skip
-    foot_depth: float = parameter(
-        Quantity("m", at_least=0), "48 mm", "depth of its bottom below that", _LONG, default=0.048
-    )
-    centroid_height: float = parameter(
-        Quantity("m"), "33 mm", "height of its centroid above that", f"-1 m to 1 m: {_RAILS}", default=0.033
-    )
-    foot_width: float = 0.15
-
     def __post_init__(self) -> None:
-        checked_parameters(self)
-        positive("width of the rail's foot (m)", self.foot_width)
+        super().__post_init__()
+        if self.web_thickness is not None:
+            rail_web.section_of(self)  # refuses what cannot be
 
     @property
     def height(self) -> float:
         """From the bottom of the foot to the top of the head, m."""
         return self.head_height + self.foot_depth
 
-    def contact_shapes(self, place: float) -> Array:
-        """What moves a contact, a place (m) off the middle of the head, down and sideways (2, 2), by rows.
+    @cached_property
+    def section(self) -> rail_web.WebbedSection | None:
+        """Head, foot and the web that bends between them; None of a section that keeps its form."""
+        return None if self.web_thickness is None else rail_web.section_of(self)
 
-        1 by the motion of the centre of twist, m by twist.
+    def contact_shapes(self, place: float) -> Array:
+        """What moves a contact, a place (m) off the middle of the head, down and sideways (2, m), by rows.
+
+        1 by the motion of the centre of twist or of the head, m by twist.
         """
-        return np.array([[0.0, place], [1.0, self.head_height]])
+        if self.section is None:
+            return np.array([[0.0, place], [1.0, self.head_height]])
+        return np.stack([[0.0, place, 0.0, 0.0], self.section.top])
+
+    @property
+    def mean_squares(self) -> Array:
+        """Mean over the height of the rail of its displacement squared, by motions (m, m)."""
+        if self.section is not None:
+            return self.section.squares
+        low = -self.foot_depth
+        high = self.head_height
+        slope = 0.5 * (high + low)
+        return np.array([[1.0, slope], [slope, (high**2 + high * low + low**2) / 3.0]])
 
     def support(self, omega: ArrayLike) -> Complex:
-        """Dynamic stiffness of a support (2, 2, f) at angular frequencies (f,), rad/s, as of `Track.waves`.
+        """Dynamic stiffness of a support (m, m, f) at angular frequencies (f,), rad/s, as of `Track.waves`.
 
         That of the chain of springs and masses below, on the foot, and the pad's stiffness against roll.
         """
         track = self.track
-        foot = np.array([1.0, -self.foot_depth])
+        foot = np.array([1.0, -self.foot_depth]) if self.section is None else self.section.bottom
         found = np.multiply.outer(np.outer(foot, foot), self._moved_sideways.support.stiffness(omega))
         even = self.foot_width**2 / 12.0
         roll = _share(self.pad_roll_stiffness, track.pad_stiffness, even)
-        found[1, 1] += roll * track.springs["pad"].stiffness(omega)
+        found[-1, -1] += roll * track.springs["pad"].stiffness(omega)
         return np.asarray(found)
 
     @cached_property
@@ -245,17 +208,20 @@ class LateralTrack:
     def free_waves(self, omega: Complex, foundation: Complex | float = 0.0) -> FreeWaves:
         """Waves of the rail without supports at angular frequencies (f,), rad/s, as of `Track.waves`.
 
-        Stiffness per length of a foundation all along the rail (2, 2, f), which takes from the inertia.
+        Stiffness per length of a foundation all along the rail (m, m, f), which takes from the inertia.
 
-        With q = k², t = EI q − ρI ω² and p = 1 + t/S, the answer to a harmonic force and torque along the
-        rail is [[p (GJ q − I ω²), p m' e ω²], [p m' e ω², q t − p m' ω²]]/Δ(q), Δ the cubic (q t − p m' ω²)
-        (GJ q − I ω²) − p (m' e ω²)², I the polar inertia about the centre of twist and e the height of the
-        centroid above it. Each root is a wave, and its residue has one shape.
+        Of a section that keeps its form, with q = k², t = EI q − ρI ω² and p = 1 + t/S, the answer to a
+        harmonic force and torque along the rail is [[p (GJ q − I ω²), p m' e ω²], [p m' e ω², q t − p m'
+        ω²]]/Δ(q), Δ the cubic (q t − p m' ω²) (GJ q − I ω²) − p (m' e ω²)², I the polar inertia about the
+        centre of twist and e the height of the centroid above it. Each root is a wave, and its residue has
+        one shape; of a section whose web bends as in `asperity.structures.rail_web`.
         """
+        losses = self.track.rail.losses.at(omega)
+        if self.section is not None:
+            return FreeWaves(*rail_web.webbed_waves(self.section, omega, losses, foundation))
         square = omega**2
         e = self.centroid_height
         mass = self.track.mass_per_length
-        losses = self.track.rail.losses.at(omega)
         bending, torsion = self.bending_stiffness * losses, self.torsional_stiffness * losses
         soft = self.bending_stiffness / self.shear_stiffness  # EI/S, m²: both lose alike
         held = np.broadcast_to(foundation, (2, 2, len(omega)))
@@ -286,7 +252,7 @@ class LateralTrack:
         return FreeWaves(k, shapes, -0.5j * larger / (k * slope))
 
     def waves(self, omega: ArrayLike) -> LateralWaves:
-        """The three waves of the supported rail at angular frequencies (f,), rad/s, as of `Track.waves`."""
+        """The waves of the supported rail at angular frequencies (f,), rad/s, as of `Track.waves`."""
         omega = np.atleast_1d(np.asarray(omega, dtype=complex))
         track = self.track
         if not self._is_damped:
@@ -337,7 +303,7 @@ class LateralTrack:
     def decay_rate_en15461(self, frequency: ArrayLike) -> Array:
         """Decay rate (f,), dB/m, as a hammer on the side of the head at mid-span finds it; (f,), Hz.
 
-        All three waves at once, at the distances of EN 15461.
+        All waves at once, at the distances of EN 15461.
         """
         waves, (_, sideways) = self.waves(_angular(frequency)), self.contact_shapes(0.0)
         spacing = self.track.sleeper_spacing
