@@ -17,7 +17,7 @@ import numpy as np
 
 import asperity
 from asperity.case.bodies import WheelOnRail
-from asperity.fitting.observable import Measured
+from asperity.observables.observable import Measured
 from asperity.scenes.measured import HammerTest
 
 RATES = "vertical decay rate"

@@ -30,7 +30,7 @@ from scipy.optimize import brentq, least_squares
 
 import asperity
 from asperity.case.bodies import WheelOnRail
-from asperity.fitting.observable import Measured
+from asperity.observables.observable import Measured
 from asperity.reference import cnossos
 from asperity.scenes import schema
 from asperity.scenes.measured import HammerTest

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from asperity.fitting.observable import Measured, Observable
+from asperity.observables.observable import Measured, Observable
 
 TRACK = {"name": "uic60", "pad_stiffness": 3e8, "pad_loss_factor": 0.2, "ballast_loss_factor": 1.0}
 RUBBER = "rubber"

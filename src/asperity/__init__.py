@@ -18,7 +18,7 @@ _HOME = {
     "HeightMap": "surfaces.heightmap",
     "Hertz": "contact.hertz",
     "LineContact": "contact.line",
-    "Measured": "fitting.observable",
+    "Measured": "observables.observable",
     "Material": "reference.materials",
     "ModalStructure": "structures.modal",
     "Profile": "surfaces.heightmap",

@@ -3,7 +3,7 @@
 import pytest
 
 import asperity
-from asperity.fitting import observables
+from asperity import observables
 from known_keys import RUBBER, RUBBERY, TRACK
 
 

@@ -9,7 +9,7 @@ import pytest
 import asperity
 from asperity.fitting import determined, running
 from asperity.fitting.determined import open_direction, spread_of
-from asperity.fitting.observable import Measured
+from asperity.observables.observable import Measured
 from known_keys import RUBBER, mobility
 from refusals import refusals
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from asperity.errors import InputError
-from asperity.fitting import reading
-from asperity.fitting.observable import Measured
-from asperity.fitting.reading import combined, read_measured, read_where
 from asperity.fitting.running import measured_for
+from asperity.observables import reading
+from asperity.observables.observable import Measured
+from asperity.observables.reading import combined, read_measured, read_where
 from refusals import refusals
 
 WIDE = """\

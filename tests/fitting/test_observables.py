@@ -8,12 +8,13 @@ import pytest
 import xarray
 
 import asperity
+from asperity import observables
 from asperity.case.cases import as_case, read_case
 from asperity.case.tables import read_levels
-from asperity.fitting import observable as fitted_to
-from asperity.fitting import observables
-from asperity.fitting.observable import Measured, TriedCase
+from asperity.fitting import tried as fitted_to
 from asperity.fitting.running import measured_for
+from asperity.fitting.tried import TriedCase
+from asperity.observables.observable import Measured
 from asperity.scenes import schema
 from asperity.schema import bearing, contact, group, spectra
 from asperity.spectra import a_weighting

@@ -11,8 +11,9 @@ from scipy import interpolate, linalg
 
 from asperity import Track
 from asperity.case.bodies import WheelOnRail
-from asperity.fitting.observable import Measured, TriedCase
-from asperity.fitting.observables import observable
+from asperity.fitting.tried import TriedCase
+from asperity.observables import observable
+from asperity.observables.observable import Measured
 from asperity.scenes.measured import lateral_hammer_test
 from asperity.scenes.sideways import Sideways
 from asperity.structures.lateral_rail import LateralTrack

@@ -15,9 +15,9 @@ from asperity.case.form import content, file_digest
 from asperity.case.toml import toml_text
 from asperity.cli.commands import mark_of, refuse_other_case, taken_folder
 from asperity.fitting.fitted import Fitted
-from asperity.fitting.observables import observable
-from asperity.fitting.reading import read_where
 from asperity.fitting.running import chosen_free, fitted, measured_for
+from asperity.observables import observable
+from asperity.observables.reading import read_where
 from asperity.progress import progress_bar
 from asperity.reporting import data
 from asperity.reporting.figure import PageFigure

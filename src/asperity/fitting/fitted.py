@@ -7,8 +7,8 @@ import numpy as np
 from asperity.arguments import Array
 from asperity.case.any_case import AnyCase
 from asperity.fitting.free import Free
-from asperity.fitting.observable import Measured, Values
-from asperity.fitting.observables import observable
+from asperity.observables import observable
+from asperity.observables.observable import Measured, Values
 from asperity.written_numbers import count_of, in_a_row, rounded
 
 

@@ -12,9 +12,10 @@ from asperity.case.any_case import AnyCase
 from asperity.case.form import content, digest
 from asperity.errors import ComputationError, InputError, PhysicsWarning
 from asperity.fitting.free import Free, spectrum_of
-from asperity.fitting.observable import Measured, Observable, TriedCase, Values
-from asperity.fitting.observables import observable
 from asperity.fitting.search import FAR, central_slopes, forward_slopes, grouped_slopes
+from asperity.fitting.tried import TriedCase
+from asperity.observables import observable
+from asperity.observables.observable import Measured, Observable, Values
 from asperity.progress import Progress
 from asperity.store import content_key
 

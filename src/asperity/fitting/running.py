@@ -14,7 +14,7 @@ from asperity.case.any_case import AnyCase, entry_of
 from asperity.case.form import case_key
 from asperity.case.scene import Case
 from asperity.errors import BandsWarning, InputError
-from asperity.fitting import determined, reading
+from asperity.fitting import determined
 from asperity.fitting.fitted import Estimate, Fitted, Undetermined
 from asperity.fitting.free import (
     Free,
@@ -25,8 +25,6 @@ from asperity.fitting.free import (
     read_free,
     read_range,
 )
-from asperity.fitting.observable import Measured, Values
-from asperity.fitting.observables import observable
 from asperity.fitting.problem import Problem
 from asperity.fitting.search import (
     FINE,
@@ -38,6 +36,8 @@ from asperity.fitting.search import (
     starts_within,
     updated_slopes,
 )
+from asperity.observables import observable, reading
+from asperity.observables.observable import Measured, Values
 from asperity.progress import Progress, shown_progress
 from asperity.scenarios.preparing import with_cells_fixed
 from asperity.store import Store, made

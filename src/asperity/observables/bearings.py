@@ -11,7 +11,7 @@ from asperity.case.ball_bearing import BearingUnderLoad
 from asperity.case.table_headings import Column
 from asperity.case.tables import read_table
 from asperity.diagnostics import ISO_BANDS
-from asperity.fitting.observable import Collected, Measured, Observable, TriedCase, Values
+from asperity.observables.observable import Collected, Measured, Observable, Predictable, Values
 from asperity.schema import bearing
 from asperity.structures.ball_bearing import PARTS
 
@@ -36,7 +36,7 @@ def _tones(case: BearingUnderLoad) -> Array:
     return np.array([*(turning.tone(part) for part in PARTS), turning.cage])
 
 
-def _tone(trial: TriedCase, measured: Measured) -> Values:
+def _tone(trial: Predictable, measured: Measured) -> Values:
     """The tones nearest to those that were measured."""
     case = trial.case
     assert isinstance(case, BearingUnderLoad)
@@ -63,7 +63,7 @@ def _collect_velocity(tree: DataTree) -> Collected:
     return {"band_velocity": np.asarray(velocity.values)}
 
 
-def _velocity(trial: TriedCase, measured: Measured) -> Values:
+def _velocity(trial: Predictable, measured: Measured) -> Values:
     """Of the band of ISO 15242-2 that holds each frequency; NaN outside of all."""
     found = np.full(measured.at.shape, np.nan)
     for value, (low, high) in zip(trial.collected["band_velocity"], ISO_BANDS, strict=True):
@@ -82,7 +82,7 @@ def _collect_line(tree: DataTree) -> Collected:
     return {"envelope": np.asarray(envelope.values), "envelope_frequency": frequency}
 
 
-def _line(trial: TriedCase, measured: Measured) -> Values:
+def _line(trial: Predictable, measured: Measured) -> Values:
     """The largest amplitude near each frequency; NaN beyond the envelope that was computed."""
     lines, amplitude = trial.collected["envelope_frequency"], trial.collected["envelope"]
     found = []

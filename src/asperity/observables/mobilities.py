@@ -11,8 +11,8 @@ from asperity.case.measured import FORMS, read_mobility
 from asperity.case.table_headings import Column
 from asperity.case.tables import read_table, refuse_disorder
 from asperity.errors import InputError
-from asperity.fitting.observable import Measured, Observable, TriedCase, Values
-from asperity.fitting.observables.decay_rates import keys_of_track, supports
+from asperity.observables.decay_rates import keys_of_track, supports
+from asperity.observables.observable import Measured, Observable, Predictable, Values
 from asperity.structures.modal import modal_receptance
 
 MOBILITY = "mobility"
@@ -33,7 +33,7 @@ def no_structure(case: AnyCase) -> str:
     return "" if over.extent is not None else "a plane that is rigid"
 
 
-def _predict(trial: TriedCase, measured: Measured) -> Values:
+def _predict(trial: Predictable, measured: Measured) -> Values:
     """Mobility between the places, of a rail by default at mid-span, of a structure in its middle."""
     case, frequency = trial.case, measured.at
     track = keys_of_track(case)

@@ -8,7 +8,7 @@ from asperity.arguments import Array
 from asperity.case.any_case import AnyCase
 from asperity.case.measured import read_decay_rates
 from asperity.case.rolled_over import TrackKeys
-from asperity.fitting.observable import Measured, Observable, TriedCase, Values
+from asperity.observables.observable import Measured, Observable, Predictable, Values
 from asperity.scenes.measured import LINES, HammerTest, lateral_hammer_test
 
 SEARCHED = 12
@@ -49,14 +49,14 @@ def supports(case: AnyCase) -> tuple[str, ...]:
     return (*found, "track.rail_loss_factor")
 
 
-def _vertical(trial: TriedCase, measured: Measured) -> Values:
+def _vertical(trial: Predictable, measured: Measured) -> Values:
     keys = keys_of_track(trial.case)
     assert keys is not None
     lines = LINES if trial.fine else SEARCHED
     return HammerTest.of_track(keys.model(), measured.at, lines).decay_rate
 
 
-def _lateral(trial: TriedCase, measured: Measured) -> Values:
+def _lateral(trial: Predictable, measured: Measured) -> Values:
     keys = keys_of_track(trial.case)
     assert keys is not None
     sideways = getattr(trial.case, "sideways").model(keys.model().regular, keys.rail_foot_width)  # noqa: B009

@@ -2,25 +2,15 @@
 
 import re
 from collections.abc import Callable, Mapping
-from contextlib import suppress
 from dataclasses import dataclass, field
-from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from xarray import DataTree
 
 from asperity.arguments import Array, NDArray, require, shown
 from asperity.case.any_case import AnyCase
-from asperity.case.form import Section, case_key
-from asperity.errors import PhysicsWarning
-from asperity.progress import Progress
-from asperity.running import run
-from asperity.store import Store, made
-
-RUN_FORMAT = 1
-"""Raise it when what is kept of a run no longer means what it meant."""
 
 Values = NDArray[np.inexact]
 Collected = dict[str, Array]
@@ -34,7 +24,7 @@ class Measured:
     Parameters
     ----------
     what : str
-        One of `asperity.fitting.observables.quantities()`, as ``"vertical decay rate"``.
+        One of `asperity.observables.quantities()`, as ``"vertical decay rate"``.
     at : array_like (n,)
         Where along its axis: frequencies, Hz, centres of bands, Hz, loads, N.
     values : array_like (n,)
@@ -95,65 +85,24 @@ class Measured:
         return len(self.at) * (2 if np.iscomplexobj(self.values) else 1)
 
 
-@dataclass(frozen=True, eq=False)
-class TriedCase:
-    """A case with values that a fit tries.
+class Predictable(Protocol):
+    """A case of which something is predicted, with what a run of it gives."""
 
-    Parameters
-    ----------
-    base : AnyCase
-        The case that is fitted.
-    changes : mapping
-        Dotted keys with their values, in SI; None takes a key out.
-    fine : bool
-        Whether bands are resolved as in a report, or enough to search.
-    progress : callable
-        Called while it is run.
-    """
-
-    base: AnyCase
-    changes: Mapping[str, Any]
-    fine: bool = True
-    progress: Progress = lambda *_: None
-
-    @cached_property
+    @property
     def case(self) -> AnyCase:
-        """The case, whose changed sections alone are made anew; keys that are right are not read again."""
-        by_section: dict[str, dict[str, Any]] = {}
-        for dotted, value in self.changes.items():
-            title, _, name = dotted.rpartition(".")
-            by_section.setdefault(title, {})[name] = value
-        top = by_section.pop("", {})
-        sections = {
-            title: _section(self.base, title).with_known(**each) for title, each in by_section.items()
-        }
-        return self.base.with_known(**top, **sections)
+        """The case."""
 
-    @cached_property
+    @property
     def whole(self) -> AnyCase:
-        """The case, read as a whole: what follows from other keys is chosen anew. Its main law alone runs."""
-        return self.base.with_(**{"laws": self.base.laws[:1], **self.changes})
+        """The case as it is run."""
 
-    @cached_property
+    @property
+    def fine(self) -> bool:
+        """Whether bands are resolved as in a report, or enough to search."""
+
+    @property
     def collected(self) -> Collected:
-        """What a run of it gives of all that is measured, kept by all that it depends on."""
-        from asperity.fitting.observables import BUILT_IN
-
-        def ran() -> Collected:
-            tree = run(self.whole, self.progress, brief=True)
-            found = Collected()
-            for each in BUILT_IN.values():
-                with suppress(KeyError):  # of another kind of case
-                    found |= each.collect(tree) if each.collect is not None else {}
-            return found
-
-        with PhysicsWarning.ignored():
-            return made(Store(), case_key("run-of-a-fit", RUN_FORMAT, self.whole), ran)
-
-
-def _section(case: AnyCase, title: str) -> Section:
-    found: Section = getattr(case, title)
-    return found
+        """What a run of it gives of all that is measured."""
 
 
 @dataclass(frozen=True)
@@ -175,7 +124,7 @@ class Observable:
     lacks : callable
         What a case lacks to predict it, in words; empty where it lacks nothing.
     predict : callable
-        Its values at those of a `Measured`, (n,), of a `TriedCase`.
+        Its values at those of a `Measured`, (n,), of a `Predictable`.
     free : callable
         Keys that are fitted where none are named, those of the case first that decide most.
     words : str
@@ -192,7 +141,7 @@ class Observable:
     decade: float
     uncertainty: float
     lacks: Callable[[AnyCase], str]
-    predict: Callable[[TriedCase, Measured], Values]
+    predict: Callable[[Predictable, Measured], Values]
     free: Callable[[AnyCase], tuple[str, ...]]
     words: str
     read: Callable[[Path], list[Measured]] | None = None

@@ -9,7 +9,7 @@ from asperity.case.any_case import AnyCase
 from asperity.case.scene import Case
 from asperity.case.table_headings import Column
 from asperity.case.tables import read_table
-from asperity.fitting.observable import Collected, Measured, Observable, TriedCase, Values
+from asperity.observables.observable import Collected, Measured, Observable, Predictable, Values
 from asperity.schema import contact
 
 STIFFNESS = "contact stiffness"
@@ -28,7 +28,7 @@ def _collect(tree: DataTree) -> Collected:
     }
 
 
-def _predict(trial: TriedCase, measured: Measured) -> Values:
+def _predict(trial: Predictable, measured: Measured) -> Values:
     """Tangent stiffness dF/dr at each load; NaN beyond the loads that were computed."""
     load, stiffness = trial.collected["contact_load"], trial.collected["contact_stiffness"]
     known = (load > 0.0) & (stiffness > 0.0)

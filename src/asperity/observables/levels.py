@@ -12,8 +12,8 @@ from asperity.case.measured import band_numbers, read_band_levels
 from asperity.case.scene import Case
 from asperity.case.table_headings import Column
 from asperity.case.tables import read_table
-from asperity.fitting.observable import Collected, Measured, Observable, TriedCase, Values
-from asperity.fitting.observables.decay_rates import keys_of_track, no_track
+from asperity.observables.decay_rates import keys_of_track, no_track
+from asperity.observables.observable import Collected, Measured, Observable, Predictable, Values
 from asperity.scenes import schema
 from asperity.schema import Entry, spectra
 
@@ -54,7 +54,7 @@ def _no_passage(case: AnyCase) -> str:
     return "" if case.passage.passed is not None else "no pass-by time: noise.vehicle_length is not given"
 
 
-def _sound(trial: TriedCase, measured: Measured) -> Values:
+def _sound(trial: Predictable, measured: Measured) -> Values:
     """Equivalent levels over the pass-by time."""
     case = trial.whole
     assert isinstance(case, Case)
@@ -93,11 +93,11 @@ def _no_sensors(case: AnyCase) -> str:
     return "" if sensed else "no accelerometers on what is rolled over"
 
 
-def _force(trial: TriedCase, measured: Measured) -> Values:
+def _force(trial: Predictable, measured: Measured) -> Values:
     return levels_in_bands(trial.collected, spectra.FORCE_LEVEL.name, measured.at)
 
 
-def _acceleration(trial: TriedCase, measured: Measured) -> Values:
+def _acceleration(trial: Predictable, measured: Measured) -> Values:
     """Of the sensor nearest to the place of the response; without one the energy mean of all."""
     held = levels_in_bands(trial.collected, schema.ACCELERATION_LEVEL.name, measured.at)
     if measured.places is not None:

@@ -15,8 +15,8 @@ from asperity.case.form import content
 from asperity.case.table_headings import WIDE, are_words
 from asperity.case.tables import LARGEST_TABLE
 from asperity.errors import InputError
-from asperity.fitting.observable import Measured, Observable
-from asperity.fitting.observables import BUILT_IN, decay_rates, levels, mobilities, observable
+from asperity.observables import BUILT_IN, decay_rates, levels, mobilities, observable
+from asperity.observables.observable import Measured, Observable
 from asperity.parameters import FROM_PYTHON
 from asperity.spectra import a_weighting
 from asperity.text_files import lines_of_cells, number_in, read_text
