@@ -14,6 +14,7 @@ from asperity.arguments import file_path, nearest, require, shown
 from asperity.case.documented import allowed_in
 from asperity.case.form import Inner, Section, content, described_value, holds_memory
 from asperity.case.ready_lists import NamedChanges
+from asperity.case.speed import written_course
 from asperity.case.toml import toml_text, toml_value
 from asperity.errors import InputError
 from asperity.laws import family_of, law_keys, names, spec_of
@@ -30,6 +31,7 @@ from asperity.parameters import (
     name_of_numbers,
 )
 from asperity.reference.materials import MATERIALS, Material
+from asperity.speeds import SpeedCourse
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.units import written
 
@@ -141,7 +143,10 @@ def value_in_toml(value: Any, key: Key, *, exactly: bool = True) -> Any:
     if not isinstance(value, float) or not isinstance(key.one, Quantity):
         return value
     unit = _UNIT.search(str(key.written_example))
-    return written(value, key.one.dimension, unit[1] if unit else key.one.dimension, exactly=exactly)
+    how = key.one.dimension, unit[1] if unit else key.one.dimension
+    if isinstance(value, SpeedCourse):
+        return written_course(value, *how, exactly=exactly)
+    return written(value, *how, exactly=exactly)
 
 
 def refused(dotted: str, value: object) -> NoReturn:

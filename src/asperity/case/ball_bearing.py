@@ -19,6 +19,7 @@ from asperity.case.body import DAMPING
 from asperity.case.form import Numbers, Section, name_of, section
 from asperity.case.ready_lists import IN_BEARINGS, NamedChanges, listed_changes
 from asperity.case.sections import DURATION, DURATION_OR_ZERO
+from asperity.case.speed import Speed, span_of
 from asperity.case.surface import INDEX
 from asperity.case.table_headings import Column
 from asperity.case.tables import TableFile, TableSource, read_table
@@ -38,6 +39,7 @@ from asperity.parameters import (
 )
 from asperity.reference.bearings import LISTED, LISTING, named_bearings
 from asperity.rolling.resolution import PER_MODE
+from asperity.speeds import SpeedCourse, covered, reached
 from asperity.structures.ball_bearing import PARTS, BallBearing, Kinematics
 from asperity.structures.modal import HIGHEST
 from asperity.surfaces.faults import Fault
@@ -62,7 +64,7 @@ FEWEST = 5.0
 _STIFFNESS = Quantity("N/m", at_least=0)
 _STIFF = "1 N/m to 1 TN/m: softer holds nothing, harder is rigid"
 _RATE, _MASS = Quantity("Hz", above=0), Quantity("kg", above=0)
-_SPEED = Quantity("Hz", "1/min", above=0)
+_SPEED = Speed("Hz", "1/min", above=0)
 _DAMPED = "1e-9 N s/m to 1e9 N s/m: less damps nothing, more is rigid"
 _BAND, _ANGLES = ListOf(Quantity("Hz", at_least=0), least=2), ListOf(Quantity("rad"), least=1)
 _RATIO, _SLIPS = Number(at_least=0, at_most=0.99), ListOf(Number(at_least=0, at_most=0.2), least=2)
@@ -377,6 +379,16 @@ class BearingUnderLoad(AnyCase):
 
     # --- what follows from the keys
 
+    def default_of(self, name: str) -> Any:
+        """Value of a key that is left out: a run-up is recorded until it ends."""
+        if name == "duration" and isinstance(self.speed, SpeedCourse):
+            return self.speed.end
+        return super().default_of(name)
+
+    def _choose(self) -> None:
+        if "duration" not in self.given_names:
+            self.__dict__["duration"] = self.default_of("duration")
+
     @property
     def helping_changes(self) -> NamedChanges:
         """Changes that may make it quieter: clearance, preload, grooves, waves of each part, …."""
@@ -386,7 +398,7 @@ class BearingUnderLoad(AnyCase):
     def title(self) -> str:
         """Say what runs."""
         name = "Ball bearing" if self.bearing.name is None else f"Ball bearing {self.bearing.name}"
-        return f"{name} at {rounded(60.0 * self.speed, 5)} 1/min"
+        return f"{name} at {span_of(self.speed, 60.0)} 1/min"
 
     @cached_property
     def static(self) -> LoadedBearing:
@@ -506,7 +518,8 @@ class BearingUnderLoad(AnyCase):
             yield error.about(heavier) if error.what in ("load", "contact") else error
             return
         if leaving is not None:
-            received = f"{rounded(60.0 * self.speed, 5)} 1/min, which lifts balls off the inner ring"
+            upto = "up to " * isinstance(self.speed, SpeedCourse)
+            received = f"{upto}{rounded(60.0 * self.speed, 5)} 1/min, which lifts balls off the inner ring"
             allowed = (
                 f"less than {rounded(60.0 * leaving, 5)} 1/min, or a larger axial load or bearing.preload"
             )
@@ -526,8 +539,9 @@ class BearingUnderLoad(AnyCase):
             allowed = f"{0.5 * self.sampling_rate:g} Hz"
             yield InputError("envelope_band", received, f"at most half the sampling_rate, {allowed}")
         tones = [self.kinematics.tone(part) for part in PARTS]
-        if self.duration * min(tones) < FEWEST:
-            least = f"{1e3 * FEWEST / min(tones):.4g} ms"
+        turns = FEWEST * self.speed / min(tones)
+        if covered(self.speed, self.duration) < turns:
+            least = f"{1e3 * reached(self.speed, turns):.4g} ms"
             allowed = f"at least {least}, in which the slowest tone comes {FEWEST:g} times"
             yield InputError("duration", written(self.duration, "s", "ms"), allowed)
         if self.envelope_band is not None and np.ptp(self.envelope_band) < 1.1 * max(tones):

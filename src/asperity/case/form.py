@@ -21,6 +21,7 @@ from asperity.case import documented
 from asperity.errors import CaseError, InputError
 from asperity.parameters import FROM_PYTHON, Key, Origin, Problems, outside
 from asperity.reference.materials import Material
+from asperity.speeds import SpeedCourse
 from asperity.store import content_key
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.units import written
@@ -192,7 +193,8 @@ class Section:
         for name in [name for name in self.keys if name in self.given_names and self.keys[name].within]:
             key = self.keys[name]
             value = getattr(self, name)
-            for each in value if isinstance(value, tuple) else (value,):
+            every = (value.slowest, float(value)) if isinstance(value, SpeedCourse) else (value,)
+            for each in value if isinstance(value, tuple) else every:
                 implausible += outside(name, each, key.one, key.within)
         if implausible:
             return implausible
@@ -368,7 +370,7 @@ def content(value: Any, of_file: Callable[[Path], str] = str) -> Any:
     `of_file` says what stands for a file: its path, or a digest of what it holds.
     """
     if isinstance(value, _PLAIN):
-        return value
+        return value.points if isinstance(value, SpeedCourse) else value
     if isinstance(value, Section):
         return {name: content(getattr(value, name), of_file) for name in (*value.keys, *value.section_names)}
     if isinstance(value, Mapping):

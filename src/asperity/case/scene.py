@@ -14,13 +14,15 @@ from asperity.case.form import section
 from asperity.case.ready_lists import NamedChanges
 from asperity.case.rolled_over import RolledOver, TrackKeys
 from asperity.case.sections import DURATION, DURATION_OR_ZERO, ContactKeys, NoiseKeys, NumericsKeys
+from asperity.case.speed import Speed, refuse_course
 from asperity.case.surface import INDEX, POSITION, Surface
 from asperity.case.time_steps import on_grid, resolving
 from asperity.contact.hertz import Hertz, relative_radius
 from asperity.errors import InputError
 from asperity.laws import Need, Role, baselines, in_role, names, spec_of
-from asperity.parameters import ListOf, Quantity, key, optional
+from asperity.parameters import ListOf, key, optional
 from asperity.reference.materials import contact_modulus
+from asperity.speeds import SpeedCourse, covered, reached, slowest
 from asperity.units import written
 from asperity.written_numbers import rounded
 
@@ -76,7 +78,7 @@ class Case(AnyCase):
     )
 
     speed: float = key(
-        Quantity("m/s", above=0),
+        Speed("m/s", above=0),
         "1 m/s",
         "rolling speed",
         "0.1 mm/s to 1 km/s: slower rolling is static, and nothing rolls faster",
@@ -183,6 +185,10 @@ class Case(AnyCase):
         below = hertz.tangent_stiffness(hertz.approach(self.rolling.contact_load))
         return math.sqrt((below + self.upper_stiffness) / self.rolling.contact_mass) / (2.0 * math.pi)
 
+    def rolled_in(self, time: float) -> float:
+        """How far it rolls in a time from where the record starts, m; negative before it."""
+        return covered(self.speed, time)
+
     @property
     def has_defect(self) -> bool:
         """Whether a flat or a joint is rolled over."""
@@ -237,7 +243,7 @@ class Case(AnyCase):
     @property
     def coarsest_spacing(self) -> float:
         """Spacing of the contact grid in m on which the highest frequency is still resolved."""
-        return self.speed / (SAMPLING * self.numerics.highest_frequency)
+        return slowest(self.speed) / (SAMPLING * self.numerics.highest_frequency)
 
     @property
     def time_step(self) -> float:
@@ -282,7 +288,7 @@ class Case(AnyCase):
     def record_start(self) -> float:
         """Position in m where the record starts: as given, or after the run-in."""
         beginning = 0.0 if self.room is None else self.room[0]
-        return self.start if self.start is not None else beginning + self.speed * self.settled_time
+        return self.start if self.start is not None else beginning - self.rolled_in(-self.settled_time)
 
     @property
     def settled_time(self) -> float:
@@ -296,8 +302,8 @@ class Case(AnyCase):
         if self.room is None:
             return SETTLED
         begin, end = self.room
-        whole = max(end - begin, 0.0) / self.speed
-        before = whole if self.start is None else max(self.start - begin, 0.0) / self.speed
+        whole = reached(self.speed, max(end - begin, 0.0))
+        before = whole if self.start is None else -reached(self.speed, -max(self.start - begin, 0.0))
         if self.duration is None:
             return min(LONGEST_SETTLING, before, SETTLING_SHARE * whole)
         wanted = min(max(self.duration, SETTLED), LONGEST_SETTLING)
@@ -308,18 +314,20 @@ class Case(AnyCase):
         """Time in s that is recorded: as given, or until the foremost contact is at the end."""
         if self.duration is not None:
             return self.duration
-        return RECORDED if self.room is None else (self.room[1] - self.record_start) / self.speed
+        if self.room is None:
+            return self.speed.end if isinstance(self.speed, SpeedCourse) else RECORDED
+        return reached(self.speed, self.room[1] - self.record_start)
 
     @property
     def rolled_range(self) -> tuple[float, float]:
         """First and last position of the contact in m, from the start of the run-in."""
-        first = self.record_start - self.speed * self.settled_time
-        return first, self.record_start + self.speed * self.rolled_time
+        first = self.record_start + self.rolled_in(-self.settled_time)
+        return first, self.record_start + self.rolled_in(self.rolled_time)
 
     @property
     def point_positions(self) -> tuple[float, ...]:
         """Positions in m at which the rail's motion is recorded."""
-        return self.rolled_over.point_positions(self.record_start + self.speed * self.rolled_time / 2)
+        return self.rolled_over.point_positions(self.record_start + self.rolled_in(self.rolled_time) / 2)
 
     # --- what is chosen, and what must fit together
 
@@ -413,7 +421,7 @@ class Case(AnyCase):
         coarsest = self.coarsest_spacing
         spacing = self.contact.spacing  # fmt: skip
         if spacing > coarsest:
-            received = f"{written(spacing, 'm', 'um')} at {self.speed:g} m/s and {highest:g} Hz"
+            received = f"{written(spacing, 'm', 'um')} at {slowest(self.speed):g} m/s and {highest:g} Hz"
             allowed = f"at most speed / ({SAMPLING} highest_frequency) = {rounded(coarsest * 1e6, 4)} um"
             remedy = "Refine spacing, or lower highest_frequency."
             yield InputError("contact.spacing", received, allowed, remedy)
@@ -445,13 +453,15 @@ class Case(AnyCase):
             yield InputError(what, f"{start:g} m", allowed)
         elif first < begin - 1e-9 * max(start, 1.0):
             received = f"{self.settled_time:g} s, which begins at {first:g} m"
-            before = max(start - begin, 0.0) / self.speed
+            before = -reached(self.speed, -max(start - begin, 0.0))
             allowed = f"at most {before:.6g} s, so that the run-in begins on the {over}"
             remedy = f"Shorten it, or start farther along the {over}."
             yield InputError("settling", received, allowed, remedy)
         elif last > end * (1 + 1e-9):
             received = f"{rolled:g} s, which ends at {last:g} m"
-            allowed = f"at most {(end - start) / self.speed:.6g} s, up to {end:g} m on the {over}{foremost}"
+            allowed = (
+                f"at most {reached(self.speed, end - start):.6g} s, up to {end:g} m on the {over}{foremost}"
+            )
             yield InputError("duration", received, allowed)
         elif rolled < self.time_step:
             allowed = f"at least one time step, {self.time_step * 1e3:.4g} ms"
@@ -469,6 +479,14 @@ class Case(AnyCase):
             yield InputError("surface.joint_position", f"{joint:g} m", allowed)
         ahead = self.rolling.offsets
         start = self.record_start
+        try:
+            if isinstance(self.rolled_over, TrackKeys):
+                refuse_course(self.speed, "over a track, whose waves are computed for one")
+            if any(self.creep.creepage):
+                refuse_course(self.speed, "of what creeps")
+        except InputError as error:
+            yield error
+            return
         yield from self.rolled_over.problems_of_run(self.speed, start + min(ahead), last + max(ahead))
         if isinstance(self.rolled_over, TrackKeys):
             yield from self.noise.problems_of_train(self.contacts_behind)

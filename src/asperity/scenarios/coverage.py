@@ -11,6 +11,7 @@ from asperity.errors import InputError, OutOfRangeWarning
 from asperity.scenarios.records import spectrum_levels
 from asperity.scenarios.textures import Textures
 from asperity.spectra import HALF_BAND, nominal_frequency, nominal_length, third_octave_bands
+from asperity.speeds import slowest
 from asperity.written_numbers import rounded
 
 HEARD = (100.0, 5000.0)
@@ -67,7 +68,7 @@ def _covered(case: Case, key: str, name: str, longest: float, shortest: float) -
     highest = min(HEARD[1], case.numerics.highest_frequency)
     bands, _, _ = third_octave_bands(min(HEARD[0], 0.1 * highest), highest)
     lowest = case.speed / longest / HALF_BAND
-    top = case.speed / shortest * HALF_BAND
+    top = slowest(case.speed) / shortest * HALF_BAND
     return Coverage(key, name, (longest, shortest), bands, bands[(bands >= lowest) & (bands <= top)])
 
 

@@ -18,6 +18,7 @@ from asperity.scenarios.doubts import doubt_bearing
 from asperity.scenarios.problems import refuse
 from asperity.scenarios.raceway_laws import OnRaceway, raceway_on
 from asperity.scenarios.raceway_limits import doubt_fault, doubt_surface
+from asperity.speeds import slowest
 from asperity.store import Store
 from asperity.structures.ball_bearing import PARTS
 from asperity.structures.bearing_statics import doubt_speed
@@ -113,11 +114,12 @@ def raceways_of(prepared: PreparedBearing, progress: Progress | None) -> list[On
     of = prepared.case.bearing.bearing
     turning = prepared.case.kinematics
     passing = [2.0 * np.pi * abs(turning.cage - ring) for ring in (turning.inner, turning.outer)]
+    share = slowest(case.speed) / case.speed
     each = zip(case.contacts, prepared.raceways, of.raceway_radii, passing, strict=True)
     return [
         OnRaceway(
             smooth, surface, load, case.contact_damping, of.hardness, cache=Store(), progress=progress,
-            shortest=radius * pace / case.highest_frequency,
+            shortest=radius * share * pace / case.highest_frequency,
             parameters={law: case.law_parameters(law) for law in case.laws},
         )
         for (smooth, load), surface, radius, pace in each

@@ -4,6 +4,7 @@ import math
 
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.scene import PreparedCase
+from asperity.speeds import slowest
 
 OF_EDGES = 8
 """Positions in a half axis of the patch where edges come and go under it: of defects, of what is run in."""
@@ -34,7 +35,7 @@ def table_stride(prepared: PreparedCase) -> int:
     closest = edge_stride(prepared.shape)
     if prepared.textures.defects is not None:
         return closest
-    wave = prepared.case.speed / prepared.case.numerics.highest_frequency
+    wave = slowest(prepared.case.speed) / prepared.case.numerics.highest_frequency
     return max(closest, _rows(shape, min(shape.class_axes[0] / OF_TEXTURE, wave / OF_WAVE)))
 
 

@@ -17,6 +17,7 @@ from asperity.laws import spec_of
 from asperity.scenarios import records
 from asperity.scenarios.geometry import Geometry, cells_over, window_cells
 from asperity.scenarios.records import Grid, Record
+from asperity.speeds import SpeedCourse
 from asperity.surfaces import levelling, measured_lines, statistics, synthesis
 from asperity.surfaces.cell_means import MeansOverCells, cell_means
 from asperity.surfaces.defects import FlatShape, corrugation, dipped_joint, flat_geometry, flat_trajectory
@@ -115,8 +116,8 @@ def textures_of(case: Case) -> Textures:
     contact = case.contact
     spacing = case.contact.spacing
     margin = window_cells(case.contact)
-    lead = cells_over(case.settled_time * case.speed, spacing)
-    recorded = cells_over(case.rolled_time * case.speed + max(case.rolling.offsets), spacing) + 1
+    lead = cells_over(-case.rolled_in(-case.settled_time), spacing)
+    recorded = cells_over(case.rolled_in(case.rolled_time) + max(case.rolling.offsets), spacing) + 1
     before = margin + lead
     grid = Grid(before + recorded + margin, margin, spacing)
     seeds = [int(s) for s in np.random.SeedSequence(case.seed).generate_state(contact.samples + 3)]
@@ -225,9 +226,13 @@ def textures_under(case: Case, contact: int, first: Textures) -> Textures:
 
 def recorded_time(case: Case, textures: Textures) -> float:
     """Time of the record, s: that of the case, or until its line ends."""
+    cells = len(textures.line[textures.recorded]) - 1
+    if isinstance(case.speed, SpeedCourse):
+        room = cells * case.contact.spacing - max(case.rolling.offsets)
+        return min(case.rolled_time, case.speed.reached(room))
     pace = case.contact.spacing / case.speed
     ahead = max(case.rolling.offsets) / case.speed
-    return min(case.rolled_time, (len(textures.line[textures.recorded]) - 1) * pace - ahead)
+    return min(case.rolled_time, cells * pace - ahead)
 
 
 def warn_of_textures(case: Case, shape: Geometry, textures: Textures) -> None:
@@ -361,7 +366,7 @@ def _defects(case: Case, contact: int, textures: Textures) -> dict[str, Any]:
     if surface.joint_depth is not None:
         joint = surface.joint_position
         if joint is None:
-            joint = case.record_start + 0.5 * case.speed * case.rolled_time
+            joint = case.record_start + 0.5 * case.rolled_in(case.rolled_time)
         dip = dipped_joint(position - joint, surface.joint_depth, surface.joint_length)
         heights += dip
         centre += measured_lines.roll_over(Profile(dip, spacing), rolling.radius).heights
@@ -369,7 +374,7 @@ def _defects(case: Case, contact: int, textures: Textures) -> dict[str, Any]:
         (depth, length), around = rolling.flat, round(rolling.circumference / spacing) * spacing
         first = rolling.flat_position
         if first is None:
-            first = 0.5 * min(around, case.speed * case.rolled_time)
+            first = 0.5 * min(around, case.rolled_in(case.rolled_time))
         rolled = position - case.record_start - rolling.offsets[contact]
         along = np.mod(rolled - first + 0.5 * around, around) - 0.5 * around
         shape = cast(FlatShape, rolling.flat_shape)

@@ -18,6 +18,7 @@ from asperity.scenarios.prepared_bearing import RINGS, PreparedBearing, raceways
 from asperity.scenarios.raceway_laws import OnRaceway, ball_heights, laws_on
 from asperity.scenarios.scanned_states import within_scan
 from asperity.scenes.compute import checkpoint_of
+from asperity.speeds import SpeedCourse
 from asperity.store import Store
 from asperity.structures.ball_bearing import BallBearing
 from asperity.structures.ring import Ring
@@ -147,6 +148,10 @@ def cage_slip(case: BearingUnderLoad) -> Callable[[Array], Array]:
     rate = case.kinematics.cage
     turns = int(rate * (case.settling + case.duration)) + 3
     drawn = np.random.default_rng([case.seed, 7]).uniform(least, most, turns)
+    if isinstance(speed := case.speed, SpeedCourse):
+        before = speed.covered(-case.settling)
+        per_turn = rate / float(speed)
+        return lambda at: np.interp((speed.covered(at) - before) * per_turn + 1.0, np.arange(turns), drawn)
     return lambda at: np.interp((at + case.settling) * rate + 1.0, np.arange(turns), drawn)
 
 

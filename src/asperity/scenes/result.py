@@ -199,7 +199,7 @@ def rolling_group(computed: Computed) -> Values:
         schema.ENERGY_TERM: list(first.energy.shares),
         schema.ENERGY: [list(run.energy.shares.values()) for run in runs],
         schema.ENERGY_RESIDUAL: [run.energy.residual for run in runs],
-        rolling.SPEED: case.speed,
+        rolling.SPEED: float(case.speed),
     }
     if sensors := case.rolled_over.sensor_positions:
         laid_out |= {schema.ROLLING_SENSOR: sensors, schema.ACCELERATION: stack("acceleration")}

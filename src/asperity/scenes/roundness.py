@@ -14,6 +14,7 @@ from asperity.scenes import schema
 from asperity.scenes.observer import Observer
 from asperity.schema import Values
 from asperity.spectra import level_of
+from asperity.speeds import reached
 from asperity.written_numbers import rounded
 
 MOST_ORDERS = 60
@@ -96,7 +97,7 @@ def planned_roundness(prepared: PreparedCase) -> Iterator[tuple[str, str]]:
         yield name, found.in_words
         return
     share = len(prepared.textures.line) / points_of_a_turn(case)
-    longer = math.ceil(100.0 * case.rolling.circumference / case.speed) / 100.0
+    longer = math.ceil(100.0 * reached(case.speed, case.rolling.circumference)) / 100.0
     yield name, f"the run rolls {share:.0%} of a turn: orders are told from a duration of {longer:g} s on"
 
 

@@ -11,6 +11,7 @@ from asperity import __version__
 from asperity.arguments import shown
 from asperity.case import any_case, cases, toml
 from asperity.case.documented import allowed_in
+from asperity.case.speed import Speed, names_table
 from asperity.errors import InputError
 from asperity.files import amount
 from asperity.parameters import Choice, Either, File, Flag, ListOf, MaterialOrName, Number
@@ -144,6 +145,9 @@ def _value(entry: any_case.CaseKey, text: str, file_of: Callable[[str], Path | N
         parts = (part.strip() for part in text.split(","))
         return [_number(part) if isinstance(kind.each, Number) else part for part in parts if part]
     match kind:
+        case Speed() if names_table(text):
+            allowed = f'{kind.allowed}, or points of it, as "1 {kind.meant or "m/s"} at 0 s, …"'
+            raise InputError(entry.dotted, shown(text), allowed, "Write its points.")
         case Number() | Either(_, Number()):
             return _number(text)
         case Flag():

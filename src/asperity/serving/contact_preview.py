@@ -135,7 +135,9 @@ def _prepared(case: Case) -> PreparedCase:
     if case.surface.rms is not None:  # each sample is synthesised by itself, and one is pressed
         case = case.with_(contact={"samples": 1})
     try:
-        return prepare(case.with_(duration=max(length / case.speed, 2.0 * case.time_step), settling=0.0))
+        speed = float(case.speed)
+        duration = max(length / speed, 2.0 * case.time_step)
+        return prepare(case.with_(speed=speed, duration=duration, settling=0.0))
     except (InputError, CaseError):
         return prepare(case)
 
