@@ -94,7 +94,7 @@ test_courses_that_cannot_be_are_refused = refusals(
     (turning, "0.001..1800 1/min in 5 s", "0.001 Hz to 10 kHz"),
     (lambda speed: turning(speed, duration="20 ms"), RUN_UP, "in which the slowest tone comes 5 times"),
     (
-        lambda speed: turning(speed, radial=0.0, axial=100.0),
+        lambda speed: turning(speed, radial=0.0, bearing=TIGHT),
         "600..90000 1/min in 5 s",
         "received up to 90000 1/min, which",
     ),
