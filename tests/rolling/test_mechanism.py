@@ -8,10 +8,13 @@ from numpy.testing import assert_allclose
 
 from asperity.errors import ExtrapolationWarning
 from asperity.laws import HertzLaw, Linear
-from asperity.rolling.mechanism import Contact, Mechanism, Side, Trajectory, roll_mechanism
+from asperity.rolling.driver import roll_mechanism
+from asperity.rolling.mechanism import Mechanism, RollingContact, Side
 from asperity.rolling.roll import roll_bodies
+from asperity.rolling.trajectory import Trajectory
 from asperity.structures.body import Body, chain
 from asperity.structures.modal import ModalStructure
+from asperity.structures.rail_poles import RailBetween
 from one_contact import Stepped, rough, same
 from refusals import refusals
 
@@ -43,7 +46,7 @@ def between(step):
     ball = Body(np.array([[MASS]]), none, none, rows, np.array([MASS * 9.80665]), np.zeros(2))
     upper = Linear(0.0, SPRING)
     at = running(step)
-    contacts = [Contact(BELOW, at.places), Contact(upper, at.places, (Side(0, at),))]
+    contacts = [RollingContact(BELOW, at.places), RollingContact(upper, at.places, (Side(0, at),))]
     force = np.array([LOAD + ABOVE * 9.80665]) * -(ABOVE**-0.5)
     return Mechanism([plate(ABOVE)], [ball], contacts, [force])
 
@@ -67,12 +70,12 @@ def test_two_structures_swing_against_each_other_with_their_reduced_mass():
     """No body between them: ω² = k (1/m + 1/M), from the forces that press them."""
     light, heavy, k, press = 0.2, 0.8, 1e6, 3.0
     sides = Side(0, ALONG, 1.0), Side(1, ALONG, -1.0)
-    contact = Contact(Linear(0.0, k), along, sides)
+    contact = RollingContact(Linear(0.0, k), along, sides)
     forces = [np.array([-press]) / light**0.5, np.array([press]) / heavy**0.5]
     both = Mechanism([plate(light), plate(heavy)], [], [contact], forces)
     run = roll_mechanism(both, press, time_step=STEP, duration=TIME)
     assert_allclose(run.contact_force, press, rtol=1e-9)
-    waved = Contact(Linear(0.0, k), along, sides, heights=lambda steps: 1e-6 * (np.asarray(steps) > 9))
+    waved = RollingContact(Linear(0.0, k), along, sides, heights=lambda steps: 1e-6 * (np.asarray(steps) > 9))
     run = roll_mechanism(
         Mechanism(both.structures, [], [waved], forces), press, time_step=STEP, duration=TIME
     )
@@ -90,7 +93,7 @@ def test_what_swings_along_a_slope_works_on_it_at_the_rate_that_is_given():
     )
     across = np.linspace(-1.0, 1.0, 9)
     tilting = ModalStructure(across, [10.0], 0.0, across[:, None])
-    contact = Contact(Linear(LOAD, 1e6, damping=2.0), swing.places, (Side(0, swing),))
+    contact = RollingContact(Linear(LOAD, 1e6, damping=2.0), swing.places, (Side(0, swing),))
     run = roll_mechanism(
         Mechanism([tilting], [Body.rigid(MASS, LOAD)], [contact]), LOAD, time_step=STEP, duration=TIME
     )
@@ -108,7 +111,9 @@ def test_a_law_beyond_its_data_is_warned_of():
 
     ball = Body.rigid(MASS, LOAD)
     with pytest.warns(ExtrapolationWarning, match=r"short: .* in \d+ of 101 time steps"):
-        roll_mechanism(Mechanism([], [ball], [Contact(Short(), along)]), LOAD, time_step=STEP, duration=1e-3)
+        roll_mechanism(
+            Mechanism([], [ball], [RollingContact(Short(), along)]), LOAD, time_step=STEP, duration=1e-3
+        )
 
 
 def test_laws_that_are_solved_in_every_step_go_beside_others():
@@ -116,7 +121,7 @@ def test_laws_that_are_solved_in_every_step_go_beside_others():
     runs = []
     for law in (BELOW, Stepped(BELOW)):
         made = between(STEP)
-        lower = Contact(law, along, heights=lambda steps: 1e-7 * np.sin(np.asarray(steps) / 30.0))
+        lower = RollingContact(law, along, heights=lambda steps: 1e-7 * np.sin(np.asarray(steps) / 30.0))
         made = replace(made, contacts=[lower, made.contacts[1]])
         runs.append(roll_mechanism(made, 10.0, time_step=STEP, duration=2e-3).contact_force)
     same(runs[1], runs[0], 3e-5)  # each step to 1e-6
@@ -124,9 +129,17 @@ def test_laws_that_are_solved_in_every_step_go_beside_others():
 
 
 BALL = Body.rigid(MASS, LOAD)
+RAIL = object.__new__(RailBetween)
+
+
+def on(*sides):
+    return RollingContact(BELOW, along, sides)
 
 
 test_what_is_no_mechanism_is_refused = refusals(
     (lambda: Mechanism([], [BALL], []), "contacts.*0 for 1 contact .*one for each contact of a body"),
-    (lambda: Mechanism([], [BALL], [Contact(BELOW, along, (Side(0, ALONG),))]), "structure of a contact"),
+    (
+        lambda: Mechanism([], [BALL], [RollingContact(BELOW, along, (Side(0, ALONG),))]),
+        "structure of a contact",
+    ),
 )

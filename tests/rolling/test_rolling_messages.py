@@ -13,9 +13,12 @@ from asperity.kernels import stepping
 from asperity.laws import HertzLaw, Linear
 from asperity.reduction.texture import StateTexture
 from asperity.rolling.assembly import at_rest
-from asperity.rolling.ground import Path, ground_of
+from asperity.rolling.course import Course
+from asperity.rolling.ground import ground_of
+from asperity.rolling.mechanism import Mechanism, RollingContact, Side
 from asperity.rolling.roll import roll_bodies
 from asperity.rolling.soundness import free_motion, refuse_missed_load
+from asperity.rolling.trajectory import Path
 from asperity.structures.body import Body
 from asperity.structures.moving_kernel import MovingKernel
 from asperity.structures.rail_poles import RailBetween
@@ -189,7 +192,9 @@ def test_a_body_on_two_contacts_falls_as_one():
 
 def test_a_beam_gives_way_by_what_it_bends_at_most():
     """F L³/48 B in its middle; without bound where nothing holds it."""
-    path = Path.laid(0.1, 1.0, 1e-4, 0.8, 0.0)
+    (along,) = Path.laid(0.1, 1.0, 1e-4, 0.8, 0.0).trajectories
+    contact = RollingContact(LAW, along.places, (Side(0, along),))
     for beam, expected in ((Beam, 1.0 / 48e4), (SupportedBeam, np.inf)):
         over = beam(1.0, 1e4, 10.0, highest_frequency=2e4)
-        assert ground_of(over, path, np.zeros(0)).softest == pytest.approx(expected, rel=1e-3)
+        course = Course(Mechanism([over], [BALL], [contact]), 1e-4, 8000)
+        assert ground_of(course, np.zeros((0, 0))).softest == pytest.approx(expected, rel=1e-3)

@@ -82,11 +82,11 @@ def body_loads(bodies: Sequence[Body]) -> Array:
 
 
 def system_of(
-    ground: Ground, bodies: Sequence[Body], loads: Array, h: float, speed: float, constant: Array = NONE
+    ground: Ground, bodies: Sequence[Body], loads: Array, h: float, constant: Array = NONE
 ) -> System:
     """Constants for the kernels, with contacts as they are.
 
-    Scales of the contact forces (n,), N, time step, s, speed, m/s, constant forces on the structure (s,).
+    Scales of the contact forces (n,), N, time step, s, constant forces on the structure (s,).
     """
     b = len(bodies)
     n = len(loads)
@@ -123,7 +123,7 @@ def system_of(
         constant=np.pad(constant, (0, len(natural) - len(constant))) if len(constant) else constant,
         softening=np.zeros(n),
         time_step=float(h),
-        speed=float(speed),
+        speed=1.0,  # slopes of mode shapes are rates already
         coupled=bool(len(channels.source) > n or (n > 1 and ground.natural.size > 0) or n > b),
         channels=channels,
     )
@@ -154,7 +154,7 @@ PRELOAD = 2.0
 LOADINGS = 20
 """Times, at most, that a rail is loaded anew for bodies that share their load over several contacts."""
 ON_SUPPORT = 1e-9
-"""Distance to a support that counts as none, m."""
+"""Time from a support that counts as none, s."""
 
 
 def at_rest(
@@ -307,9 +307,9 @@ def start_at_rest(
     moving = force * ~_on_support(ground) if entering else force
     motion.push[:] = force @ shapes
     motion.displacement[:] = motion.push * softness
-    motion.velocity[:s] = system.speed * (moving @ ground.slopes) * softness[:s]
+    motion.velocity[:s] = (moving @ ground.rates) * softness[:s]
     rates = rates + ground.shapes @ motion.velocity[:s]
-    rates += system.speed * (ground.slopes @ motion.displacement[:s])
+    rates += ground.rates @ motion.displacement[:s]
     d = system.core_shapes.shape[1]
     first = 0
     for index, body in enumerate(bodies):
@@ -325,7 +325,7 @@ def start_at_rest(
 
 def _on_support(ground: Ground) -> NDArray[np.bool_]:
     """Which contacts (n,) start where no mode of the structure moves."""
-    largest, steepest = (np.abs(each).max(axis=1, initial=0.0) for each in (ground.shapes, ground.slopes))
+    largest, steepest = (np.abs(each).max(axis=1, initial=0.0) for each in (ground.shapes, ground.rates))
     return np.asarray(largest <= ON_SUPPORT * steepest)
 
 

@@ -11,17 +11,11 @@ from asperity.arguments import Array, ArrayLike, finite_array, positive, require
 from asperity.laws.linear import Linear
 from asperity.laws.spec import Law
 from asperity.progress import Progress
+from asperity.rolling.driver import rest_of, roll_mechanism
 from asperity.rolling.ledger import Ledger
-from asperity.rolling.mechanism import (
-    Contact,
-    Mechanism,
-    Side,
-    Trajectory,
-    Values,
-    rest_of,
-    roll_mechanism,
-)
+from asperity.rolling.mechanism import Mechanism, RollingContact, Side
 from asperity.rolling.soundness import STILL, steady
+from asperity.rolling.trajectory import Trajectory, Values, at_steps
 from asperity.speeds import SpeedCourse
 from asperity.store import Checkpoint
 from asperity.structures.ball_bearing import BallBearing
@@ -283,7 +277,7 @@ class _Turning:
 
     def cage(self, steps: range) -> Array:
         """Angle of the first ball."""
-        return self._cage[steps.start : steps.stop : steps.step]
+        return at_steps(self._cage, steps)
 
     def azimuth(self, ball: int, ring: int | None = None) -> Trajectory:
         """Angle of a ball, in the frame of a ring that turns if there is one."""
@@ -294,7 +288,7 @@ class _Turning:
             return self.cage(steps) + ahead - turned * self._time(steps)
 
         def rates(steps: range) -> Array:
-            return self._rate[steps.start : steps.stop : steps.step] - turned * self._share(steps)
+            return at_steps(self._rate, steps) - turned * self._share(steps)
 
         return Trajectory(places, rates)
 
@@ -340,7 +334,7 @@ class _Turning:
         rows = np.array([[1.0], [-1.0]] if easing is None else [[1.0], [-1.0], [SHORT]])
         pressing = np.array([-outwards if easing is None else 0.0])
         ball = Body(np.array([[of.ball_mass]]), none, none, rows, pressing, np.zeros(len(rows)))
-        contacts: list[Contact] = []
+        contacts: list[RollingContact] = []
         for j in range(of.balls):
             for ring, sign in ((INNER, -1.0), (OUTER, 1.0)):
                 sides = [Side(ring, self.azimuth(j), sign)]
@@ -353,13 +347,13 @@ class _Turning:
                 if isinstance(law, Sequence):
                     law = law[j]
                     along = self.on_both(j, ring)
-                contacts.append(Contact(law, along, tuple(sides), heights))
+                contacts.append(RollingContact(law, along, tuple(sides), heights))
             if easing is not None:
                 spring = Linear(outwards / SHORT, SOFT)
-                contacts.append(Contact(spring, self.azimuth(j).places, heights=easing))
+                contacts.append(RollingContact(spring, self.azimuth(j).places, heights=easing))
         return Mechanism(self.rings.structures, [ball] * of.balls, contacts)
 
-    def driven_round(self, force: float) -> list[Contact]:
+    def driven_round(self, force: float) -> list[RollingContact]:
         """A radial force, N, on the ring that turns and with it, by two springs that are pressed and pulled.
 
         They stand opposite each other, so that what they would do along the axis cancels.
@@ -373,7 +367,9 @@ class _Turning:
             )
 
         return [
-            Contact(Linear(size, SOFT), at(0.0).places, (Side(ring, at(angle)),), self._beside_fastest(size))
+            RollingContact(
+                Linear(size, SOFT), at(0.0).places, (Side(ring, at(angle)),), self._beside_fastest(size)
+            )
             for size, angle in ((half, 0.0), (-half, math.pi))
             if force
         ]
@@ -381,7 +377,7 @@ class _Turning:
     def loaded(self, mechanism: Mechanism, loads: tuple[float, float]) -> Mechanism:
         """Press the rings together, with springs that are free of force where they then are."""
         inner, outer = self.rings.inner, self.rings.outer
-        pressed = [np.zeros(len(each.natural_frequencies)) for each in mechanism.structures]
+        pressed = [np.zeros(len(each.natural_frequencies)) for each in self.rings.structures]
         pressed[INNER] = inner.pressed(*loads)
         pressed[OUTER] = -outer.pressed(*loads)
         load = self.usual_load(*loads)
@@ -392,7 +388,7 @@ class _Turning:
         loose = [
             replace(inner, frequencies=np.zeros(len(held))),
             replace(outer, frequencies=np.full(len(held), HELD)),
-            *mechanism.structures[2:],
+            *self.rings.structures[2:],
         ]
         trial = replace(mechanism, structures=loose, pressed=pressed)
         passing = self.bearing.balls * abs(self.bearing.kinematics(self.speed).cage) * self.time_step

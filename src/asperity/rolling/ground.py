@@ -1,74 +1,23 @@
-"""Paths of contacts, and what they roll over: the modes of a structure, a rigid plane, or a rail."""
+"""What contacts roll over: the modes of structures, a rigid plane, or a rail."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, positive, real
+from asperity.arguments import Array
 from asperity.errors import InputError, LargeDeflectionWarning, percent
 from asperity.kernels.rail import Channels
+from asperity.rolling.course import Course
 from asperity.rolling.resolution import PER_MODE, PER_SLEEPER
 from asperity.rolling.steps import Limit, alternating_of_modes, padded, resolved_step
-from asperity.speeds import SpeedCourse
 from asperity.structures.beam import Beam, SupportedBeam
 from asperity.structures.modal import HIGHEST, Modal
 from asperity.structures.moving_kernel import MovingKernel
 from asperity.structures.rail_poles import CELLS, RailBetween, RailPoles, over_the_period
 from asperity.structures.track import Track
 from asperity.written_numbers import rounded
-
-
-@dataclass(frozen=True, eq=False)
-class Path:
-    """Positions of contacts that move at one speed, constant or not."""
-
-    positions: Array  # (c, n), at every time step of run-in and record, m
-    speed: float  # m/s, or the course of it
-    time_step: float  # s
-    settled: int = 0  # steps of the run-in; the record starts behind them
-
-    @classmethod
-    def laid(cls, start: float, speed: float, time_step: float, duration: float, settling: float) -> Path:
-        """Lay out one contact: a run-in of `settling`, s, and from `start`, m, a record of `duration`, s."""
-        for what, value in (("speed (m/s)", speed), ("duration (s)", duration), ("time step (s)", time_step)):
-            positive(what, value)
-        real("settling (s)", settling, "zero or a finite positive number", at_least=0.0)
-        steps, settled = (int(np.floor(time / time_step * (1.0 + 1e-12))) for time in (duration, settling))
-        if steps < 1:
-            raise InputError("duration (s)", duration, f"at least one time step of {time_step:.6g} s")
-        counted = np.arange(-settled, steps + 1)
-        if isinstance(speed, SpeedCourse):
-            positions = np.asarray(start + speed.covered(time_step * counted))
-        else:
-            positions = np.asarray(start + speed * time_step * counted)
-        return cls(positions[None], speed, time_step, settled)
-
-    def ahead(self, offsets: ArrayLike) -> Path:
-        """Contacts that run ahead of the first one of this path by some distances (c,), m."""
-        return replace(self, positions=self.positions[0] + np.asarray(offsets)[:, None])
-
-    @property
-    def total(self) -> int:
-        """Time steps of run-in and record."""
-        return self.positions.shape[1] - 1
-
-    @property
-    def starts(self) -> Array:
-        """Positions of the contacts at step zero (c,), m."""
-        return self.positions[:, 0]
-
-    def rates(self, first: int, count: int) -> Array:
-        """Speeds of the contacts at steps (count,), from one on, m/s; of a course alone."""
-        assert isinstance(self.speed, SpeedCourse)
-        return self.speed.at(self.time_step * (np.arange(first, first + count) - self.settled))
-
-    @property
-    def time(self) -> Array:
-        """Times of the record, s, from zero."""
-        return np.asarray(self.time_step * np.arange(self.total + 1 - self.settled))
-
 
 PLACES = 256
 """Positions at which mode shapes are looked at."""
@@ -83,7 +32,7 @@ class Ground:
     natural: Array  # angular frequencies of its modes (s,), rad/s; none of a plane or a rail
     ratios: Array  # (s,), damping ratios
     shapes: Array  # (n, s), under the contacts at the start, kg^(−1/2)
-    slopes: Array  # (n, s), likewise, per metre; of a speed that changes times this speed, per second
+    rates: Array  # (n, s), how fast they change there, per second
     sensors: Array  # (sensors, s)
     channels: Channels  # of a rail, else none
     softest: float  # largest static compliance under a contact on its path, m/N; infinite if nothing holds it
@@ -95,40 +44,43 @@ class Ground:
     memory: int = 0  # time steps that a rail remembers
 
 
-def ground_of(over: Modal | RailBetween | None, path: Path, sensors: Array) -> Ground:
-    """Look at what is rolled over along a path, and at sensors (k,), m; refuse where it does not fit."""
-    return _rail(over, path, sensors) if isinstance(over, RailBetween) else _modes(over, path, sensors)
+def ground_of(course: Course, sensors: Array, steps: range | None = None) -> Ground:
+    """Look at what is rolled over, under the contacts at some steps, of which the first is the start.
+
+    Sensors are rows (k, s) over all modes; a contact is refused where it leaves what it rolls over.
+    """
+    looked_at = range(0, course.total + 1, max(1, (course.total + 1) // PLACES)) if steps is None else steps
+    rail = course.mechanism.rail
+    return _modes(course, sensors, looked_at) if rail is None else _rail(rail, course, sensors)
 
 
-def _modes(over: Modal | None, path: Path, sensors: Array) -> Ground:
-    """A structure by its modes, or a plane that does not move, without any."""
-    natural, ratios, n = np.zeros(0), np.zeros(0), len(path.positions)
-    if over is not None:
-        _refuse_to_leave(over, path)
-        natural = 2.0 * np.pi * over.natural_frequencies
-        ratios = over.damping_ratios
-    elif sensors.size:
-        raise InputError("sensors", f"{sensors.size} on a rigid plane", "none: it does not move")
-
-    def shapes(x: Array) -> tuple[Array, Array]:
-        none = np.zeros((x.size, natural.size))
-        return over.shapes(x) if over is not None and x.size else (none, none)
-
-    chosen = path.positions[:, :: max(1, (path.total + 1) // PLACES)].T
-    along = shapes(chosen.ravel())[0].reshape(*chosen.shape, natural.size)
-    each = alternating_of_modes(resolved_step(natural, ratios, path.time_step))
-    least = float(np.linalg.eigvalsh((along * each) @ along.transpose(0, 2, 1)).min())
-    softest = float(((along / natural) ** 2).sum(axis=2).max()) if natural.all() else np.inf
+def _modes(course: Course, sensors: Array, steps: range) -> Ground:
+    """Structures by their modes, or a plane that does not move, without any."""
+    _refuse_to_leave(course)
+    mechanism = course.mechanism
+    n = course.contacts
+    natural = 2.0 * np.pi * mechanism.natural_frequencies
+    ratios = mechanism.damping_ratios
+    shapes, _ = course.shapes_at(steps)
+    under, rates = course.shapes_at(steps[:1])
+    each = alternating_of_modes(resolved_step(natural, ratios, course.time_step))
+    least = float(np.linalg.eigvalsh((shapes * each) @ shapes.transpose(0, 2, 1)).min())
+    softest = float(((shapes / natural) ** 2).sum(axis=2).max()) if natural.all() else np.inf
     frequencies = natural / (2.0 * np.pi)
     followed = frequencies[frequencies <= HIGHEST]  # others are meant to be static
-    limit = "the highest mode of the structure", float(followed.max(initial=0.0)), PER_MODE
-    channels = no_channels(n)
-    under, slopes = shapes(path.starts)
-    if isinstance(path.speed, SpeedCourse):
-        slopes = slopes * path.rates(0, 1)
-    seen = shapes(sensors)[0]
-    yields = np.zeros((n, n))
-    return Ground(natural, ratios, under, slopes, seen, channels, softest, least, least, limit, yields)
+    return Ground(
+        natural=natural,
+        ratios=ratios,
+        shapes=under[0],
+        rates=rates[0],
+        sensors=sensors,
+        channels=no_channels(n),
+        softest=softest,
+        alternating=least,
+        thrown=least,
+        limit=("the highest mode of the structure", float(followed.max(initial=0.0)), PER_MODE),
+        yields=np.zeros((n, n)),
+    )
 
 
 def no_channels(n: int) -> Channels:
@@ -140,38 +92,40 @@ def no_channels(n: int) -> Channels:
     return Channels(none, none, none, first, np.zeros(n), 0.0, *kernels)
 
 
-def _refuse_to_leave(over: Modal, path: Path) -> None:
-    low, high = over.extent
-    margin = 1e-9 * (high - low)
-    for k, positions in enumerate(path.positions):
-        if not (positions[0] >= low - margin and positions[-1] <= high + margin):
-            raise InputError(
-                f"path of contact {k + 1} (m)",
-                f"{positions[0]:.6g} to {positions[-1]:.6g}",
-                f"{low:.6g} to {high:.6g}, on the structure",
-                "Choose start, duration, run-in and positions so that all contacts stay on it.",
+def _refuse_to_leave(course: Course) -> None:
+    for k, contact in enumerate(course.mechanism.contacts):
+        for side in contact.sides:
+            structure = course.mechanism.structures[side.structure]
+            assert not isinstance(structure, RailBetween)
+            low, high = structure.extent
+            margin = 1e-9 * (high - low)
+            first, last = (
+                float(side.trajectory.places(range(step, step + 1))[0]) for step in (0, course.total)
             )
+            if not (first >= low - margin and last <= high + margin):
+                raise InputError(
+                    f"path of contact {k + 1} (m)",
+                    f"{first:.6g} to {last:.6g}",
+                    f"{low:.6g} to {high:.6g}, on the structure",
+                    "Choose start, duration, run-in and positions so that all contacts stay on it.",
+                )
 
 
-def _rail(rail: RailBetween, path: Path, sensors: Array) -> Ground:
+def _rail(rail: RailBetween, course: Course, sensors: Array) -> Ground:
     """A rail, by poles or scattered, between contacts at fixed distances."""
-    if isinstance(path.speed, SpeedCourse):
-        received = f"{path.speed.slowest:.6g} m/s to {path.speed:.6g} m/s on a rail"
-        allowed = (
-            "one constant speed: a rail's kernel is that of one, and its waves remember where they began"
-        )
-        raise InputError("speed", received, allowed, "Roll at several constant speeds.")
     kernel = rail.kernel
-    n = len(path.positions)
-    given, made = (path.speed, path.time_step), (kernel.speed, kernel.time_step)
-    if not np.allclose(given, made, rtol=1e-9, atol=0.0):
-        received = f"{given[0]:.6g} m/s in steps of {given[1]:.6g} s"
-        allowed = f"{made[0]:.6g} m/s and {made[1]:.6g} s, for which the rail's kernel was computed"
+    n = course.contacts
+    ways = [contact.sides[0].trajectory for contact in course.mechanism.contacts]
+    given = np.array([way.rates(range(course.total + 1)) for way in ways])
+    same = np.allclose(given, kernel.speed, rtol=1e-9, atol=0.0)
+    if not (same and np.isclose(course.time_step, kernel.time_step, rtol=1e-9, atol=0.0)):
+        other = given.flat[np.abs(given - kernel.speed).argmax()]
+        received = f"{other:.6g} m/s in steps of {course.time_step:.6g} s"
+        made = f"{kernel.speed:.6g} m/s and {kernel.time_step:.6g} s"
+        allowed = f"{made}, for which the rail's kernel was computed"
         raise InputError("path", received, allowed, "Compute the moving kernel of this path.")
-    if sensors.size:
-        allowed = "none: a rail is known under the contacts alone"
-        raise InputError("sensors", f"{sensors.size} on a rail", allowed)
-    channels, weights = _channels(rail, path.starts)
+    starts = np.concatenate([way.places(range(1)) for way in ways])
+    channels, weights = _channels(rail, starts)
     found = np.zeros((n, n))
     static = np.array([each.sum(axis=1).mean() for each in weights])
     found[channels.receiver, channels.source] = static[channels.table]
@@ -184,8 +138,21 @@ def _rail(rail: RailBetween, path: Path, sensors: Array) -> Ground:
     limit = "the passing of sleepers v/L", kernel.speed / kernel.track.sleeper_spacing, PER_SLEEPER
     yields = np.asarray((vectors * squares.clip(0.0)) @ vectors.T)
     bay = kernel.track.mass_per_length * kernel.track.sleeper_spacing
-    of_modes = none, none, modes, modes, np.zeros((0, 0))
-    return Ground(*of_modes, channels, softest, least, 0.0, limit, yields, bay, taps)
+    return Ground(
+        natural=none,
+        ratios=none,
+        shapes=modes,
+        rates=modes,
+        sensors=sensors,
+        channels=channels,
+        softest=softest,
+        alternating=least,
+        thrown=0.0,
+        limit=limit,
+        yields=yields,
+        bay=bay,
+        memory=taps,
+    )
 
 
 def _channels(rail: RailBetween, starts: Array) -> tuple[Channels, list[Array]]:

@@ -60,7 +60,9 @@ def _missed_of_dampers(stepper: Stepper) -> float:
     of = stepper.system.body
     record = stepper.record
     missed = 0.0
-    for k, (body, core, rates) in enumerate(zip(stepper.bodies, record.core, stepper.started, strict=True)):
+    for k, (body, core, rates) in enumerate(
+        zip(stepper.course.bodies, record.core, stepper.started, strict=True)
+    ):
         if steps.stiff_dampers(body, h):
             count = len(body.mass)
             force = record.contact_force[of == k]

@@ -14,13 +14,17 @@ import numpy as np
 
 from asperity import errors
 from asperity.arguments import Array, ArrayLike, NDArray
+from asperity.errors import InputError
 from asperity.kernels import pointforce
 from asperity.laws.spec import Law, SteppedLaw
 from asperity.progress import Progress
 from asperity.rolling import assembly, ground
+from asperity.rolling.course import Course
 from asperity.rolling.ledger import Ledger, ledger_of
+from asperity.rolling.mechanism import Mechanism, RollingContact, Side
 from asperity.rolling.soundness import STILL, free_motion, refuse_missed_load, steady, warn_of_counts
-from asperity.rolling.stepper import OnPaths, Stepper
+from asperity.rolling.stepper import Stepper
+from asperity.rolling.trajectory import Path
 from asperity.speeds import SpeedCourse
 from asperity.store import Checkpoint
 from asperity.structures.body import Body
@@ -137,17 +141,24 @@ def roll_bodies(
     ComputationError
         If nothing is at rest at the start, or the motion runs away.
     """
-    whole = ground.Path.laid(start, speed, time_step, duration, settling)
+    if isinstance(over, RailBetween):
+        _refuse_changing(speed)
+    whole = Path.laid(start, speed, time_step, duration, settling)
     ahead, seen = (np.atleast_1d(np.asarray(given, dtype=float)) for given in (positions, sensors))
     path = whole.ahead(assembly.offsets_of(bodies, laws, ahead))
-    under = ground.ground_of(over, path, seen)
-    climbed = 1.0 if isinstance(speed, SpeedCourse) else speed  # where it changes, slopes are rates already
-    system = assembly.system_of(under, bodies, assembly.body_loads(bodies), time_step, climbed)
-    prepared = [law.prepare(at) for law, at in zip(laws, path.positions, strict=True)]
-    given, damping = (under, bodies, system, prepared), np.array([law.damping for law in laws])
+    structures = [] if over is None else [over]
+    contacts = [
+        RollingContact(law, way.places, tuple(Side(index, way) for index in range(len(structures))))
+        for law, way in zip(laws, path.trajectories, strict=True)
+    ]
+    mechanism = Mechanism(structures, bodies, contacts)
+    course = Course(mechanism, time_step, path.total, whole=True)
+    under = ground.ground_of(course, _rows_of(over, seen))
+    system = assembly.system_of(under, bodies, assembly.body_loads(bodies), time_step)
+    given, damping = (under, bodies, system, course.everywhere), np.array([law.damping for law in laws])
     at_rest = partial(assembly.start_at_rest, entering=not path.settled)
     started = assembly.softened(at_rest, *given, damping, highest_frequency)
-    stepper = Stepper(OnPaths(over, path, prepared), bodies, laws, prepared, *started, under.softest)
+    stepper = Stepper(course, *started, under.softest)
     energies = stepper.energies()
     try:
         stepper.run(progress, checkpoint)
@@ -156,7 +167,29 @@ def roll_bodies(
     return _rolled(stepper, path, energies)
 
 
-def _rolled(stepper: Stepper, path: ground.Path, energies: tuple[float, float, float]) -> RolledBodies:
+def _refuse_changing(speed: float) -> None:
+    """Refuse a speed that changes, on a rail."""
+    if isinstance(speed, SpeedCourse):
+        received = f"{speed.slowest:.6g} m/s to {speed:.6g} m/s on a rail"
+        allowed = (
+            "one constant speed: a rail's kernel is that of one, and its waves remember where they began"
+        )
+        raise InputError("speed", received, allowed, "Roll at several constant speeds.")
+
+
+def _rows_of(over: Modal | RailBetween | None, sensors: Array) -> Array:
+    """Mode shapes at sensors (k, s) of places (k,), m."""
+    if not isinstance(over, RailBetween | None):
+        return over.shapes(sensors)[0] if sensors.size else np.zeros((0, len(over.natural_frequencies)))
+    if sensors.size and over is None:
+        raise InputError("sensors", f"{sensors.size} on a rigid plane", "none: it does not move")
+    if sensors.size:
+        allowed = "none: a rail is known under the contacts alone"
+        raise InputError("sensors", f"{sensors.size} on a rail", allowed)
+    return np.zeros((0, 0))
+
+
+def _rolled(stepper: Stepper, path: Path, energies: tuple[float, float, float]) -> RolledBodies:
     """What is kept of a run that started with these energies."""
     record = stepper.record
     system = stepper.system
@@ -164,18 +197,16 @@ def _rolled(stepper: Stepper, path: ground.Path, energies: tuple[float, float, f
     kept = slice(path.settled, None)
     softened = system.softening[:, None] * record.contact_force
     seen = record.relative_displacement - softened
-    apart = np.array(list(map(flying, stepper.prepared, record.contact_force, seen)))
-    beyond = [
-        int(pointforce.evaluate_all(law, at, 0)[2]) if isinstance(law, pointforce.Prepared) else 0
-        for law, at in zip(stepper.prepared, seen, strict=True)
-    ]
+    prepared = stepper.course.everywhere
+    apart = np.array(list(map(flying, prepared, record.contact_force, seen)))
     for law in stepper.stepped.values():
         law.warn_of_flaws()
-    warn_of_counts([law.name for law in stepper.laws], counts, beyond, seen.shape[1])
+    names = [law.name for law in stepper.course.laws]
+    warn_of_counts(names, counts, stepper.course.beyond(seen), seen.shape[1])
     _refuse_missed_loads(stepper, path, apart)
     apart = apart[:, kept]
     records = {name: value[..., kept] for name, value in record._asdict().items() if name != "displacement"}
-    cores = zip(stepper.bodies, records.pop("core"), strict=True)
+    cores = zip(stepper.course.bodies, records.pop("core"), strict=True)
     return RolledBodies(
         **records,
         time=path.time,
@@ -185,7 +216,7 @@ def _rolled(stepper: Stepper, path: ground.Path, energies: tuple[float, float, f
         history_start=path.starts,
         degrees_of_freedom=tuple(core[: len(body.mass)] for body, core in cores),
         in_contact=~apart,
-        visited=np.array(list(map(_visited, stepper.prepared, seen))),
+        visited=np.array(list(map(_visited, prepared, seen))),
         softening=system.softening,
         energy=ledger_of(stepper, energies),
         evaluations=int(counts[2]),
@@ -202,19 +233,19 @@ def _visited(prepared: pointforce.Prepared | SteppedLaw, approach: Array) -> tup
     return float(from_plane.min()), float(from_plane.max())
 
 
-def _refuse_missed_loads(stepper: Stepper, path: ground.Path, apart: NDArray[np.bool_]) -> None:
+def _refuse_missed_loads(stepper: Stepper, path: Path, apart: NDArray[np.bool_]) -> None:
     """Hold each body that nothing but its contacts holds to its load; `apart` (c, n) at every step."""
     record = stepper.record
     of = stepper.system.body
     touched = []  # how far texture and contact displace bodies while they touch, m
     for approach, off in zip(record.relative_displacement, apart, strict=True):
         touched.append(0.0 if off.all() else float(np.ptp(approach[~off])))
-    sunk = stepper.softest * sum(float(np.abs(body.static_loads).sum()) for body in stepper.bodies)
-    for k, body in enumerate(stepper.bodies):
+    sunk = stepper.softest * sum(float(np.abs(body.static_loads).sum()) for body in stepper.course.bodies)
+    for k, body in enumerate(stepper.course.bodies):
         own = of == k
         if (free := free_motion(body)) is not None:
             shape, mass, load = free
-            name = stepper.laws[int(np.argmax(own))].name
+            name = stepper.course.laws[int(np.argmax(own))].name
             reach = sunk + max(np.compress(own, touched))
             force = shape @ record.contact_force[own]
             refuse_missed_load(name, force, load, mass, reach, path.time_step, path.settled)

@@ -1,26 +1,19 @@
 """Advancing bodies on their contacts to the end of the path: compiled or from Python, resumable."""
 
 import time
-from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
-from asperity.arguments import Array, NDArray
+from asperity.arguments import NDArray
 from asperity.errors import ComputationError, InputError
 from asperity.kernels import stepping
 from asperity.kernels.pointforce import Prepared, evaluate
-from asperity.laws.spec import Law, SettlingLaw, SteppedLaw, settles
+from asperity.laws.spec import SettlingLaw, SteppedLaw, settles
 from asperity.progress import Progress
-from asperity.rolling.ground import Path
-from asperity.rolling.steps import padded
-from asperity.speeds import SpeedCourse
+from asperity.rolling.course import Course
 from asperity.store import Checkpoint
-from asperity.structures.body import Body
-from asperity.structures.modal import Modal
-from asperity.structures.rail_poles import RailBetween
 from asperity.written_numbers import rounded
 
 Free = tuple[float, float, float, float]
@@ -32,86 +25,6 @@ SHAPES_AT_ONCE = 2**18
 """Mode shapes that are held at once, of all contacts: they stay in the processor's cache."""
 LONGEST, LEAST = 2048, 64
 """Steps whose mode shapes are held at once, at most and at least."""
-ALONG = ("planes", "values", "slopes", "touches")
-"""What a `Prepared` law has at every step."""
-
-
-def stacked(prepared: Sequence[Any], names: Iterable[str], rows: Any = ...) -> dict[str, Any]:
-    """Fields of `Prepared` laws of n contacts by their names, (n, ...), padded to the largest."""
-    fields = {name: [np.asarray(getattr(law, name))[rows] for law in prepared] for name in names}
-    return {name: padded(parts) for name, parts in fields.items()}
-
-
-class Course(Protocol):
-    """Where n contacts are in the course of time, and what their laws say there."""
-
-    time_step: float
-    contacts: int
-    total: int
-
-    def place(self, contact: int, step: int) -> float:
-        """Position of a contact at a step, m."""
-
-    def shapes_into(self, first: int, shapes: Array, slopes: Array) -> None:
-        """Write mode shapes under the contacts and their slopes (steps, n, s), from a step on."""
-
-    def laid(self, first: int, stop: int) -> Any:
-        """Laws from a step on to another, as `asperity.kernels.stepping.solve_prepared` takes them."""
-
-
-@dataclass(eq=False)
-class OnPaths:
-    """Contacts that run over a structure, all alike fast, under laws that are laid out on all of their paths.
-
-    Where the speed changes, slopes of mode shapes are multiplied by it: they are rates.
-    """
-
-    over: Modal | RailBetween | None
-    path: Path
-    prepared: Sequence[Prepared | SteppedLaw]
-
-    def __post_init__(self) -> None:
-        self.time_step, self.total = self.path.time_step, self.path.total
-        self.contacts = len(self.path.positions)
-
-    def place(self, contact: int, step: int) -> float:
-        """Position of a contact at a step, m."""
-        return float(self.path.positions[contact, step])
-
-    def shapes_into(self, first: int, shapes: Array, slopes: Array) -> None:
-        """Write mode shapes under the contacts and their slopes (steps, n, s), from a step on."""
-        over = self.over
-        speed = self.path.speed
-        count = len(shapes)
-        if over is None or isinstance(over, RailBetween):
-            return
-        if isinstance(speed, SpeedCourse):
-            rates = self.path.rates(first, count)[:, None]
-            for k, positions in enumerate(self.path.positions[:, first : first + count]):
-                shapes[:, k], slopes[:, k] = over.shapes(positions)
-                slopes[:, k] *= rates
-            return
-        spacing = speed * self.path.time_step
-        for k, at in enumerate(self.path.positions[:, first]):
-            shapes[:, k], slopes[:, k] = over.shapes_along(float(at), spacing, count)
-
-    def laid(self, first: int, stop: int) -> Any:
-        """Laws from a step on to another; what no step changes is stacked once."""
-        along = stacked(self.prepared, ALONG, slice(first, stop))
-        return Prepared(**self._fixed, **along), self._sizes
-
-    @cached_property
-    def _fixed(self) -> dict[str, Any]:
-        return stacked(self.prepared, set(Prepared._fields).difference(ALONG))
-
-    @cached_property
-    def _sizes(self) -> NDArray[np.int64]:
-        return sizes_of(self.prepared)
-
-
-def sizes_of(prepared: Sequence[Any]) -> NDArray[np.int64]:
-    """Numbers of states and of knots of `Prepared` laws (2, n)."""
-    return np.array([[len(getattr(law, name)) for law in prepared] for name in ("states", "knots")])
 
 
 @dataclass(eq=False)
@@ -119,9 +32,6 @@ class Stepper:
     """Bodies at rest on what they touch, under laws of their n contacts, to be advanced step by step."""
 
     course: Course
-    bodies: Sequence[Body]
-    laws: Sequence[Law]
-    prepared: Sequence[Prepared | SteppedLaw]  # the laws on their paths; none that are laid out on the way
     system: stepping.System
     motion: stepping.Motion
     largest: float  # contact force that makes no sense any more, N
@@ -137,12 +47,13 @@ class Stepper:
         acceleration = np.zeros((sensors, steps))
         moved = np.zeros((sensors if self.displacements else 0, steps))
         self.record = stepping.Histories(force, approach, over, rolling, core, acceleration, moved)
-        self.stepped = {k: law for k, law in enumerate(self.prepared) if not isinstance(law, Prepared)}
+        everywhere = self.course.everywhere
+        self.stepped = {k: law for k, law in enumerate(everywhere) if not isinstance(law, Prepared)}
         self.length = int(np.clip(SHAPES_AT_ONCE // max(n * modes, 1), LEAST, LONGEST))
         self.offset = self.end = -1
         # one place for all chunks: fresh memory takes longer than what is computed
-        self.shapes, self.slopes = np.zeros((2, self.length + 1, n, modes))
-        self.laid: Any = self.prepared
+        self.shapes, self.rates = np.zeros((2, self.length + 1, n, modes))
+        self.laid: Any = everywhere
         self.motion.counts[0] = -1
         self._advance(0, np.inf)
         self.motion.approach[1] = self.motion.approach[0]
@@ -157,7 +68,7 @@ class Stepper:
         d = system.core_shapes.shape[1]
         stored = float(modes[structure:].sum())
         pressed = 0.0
-        for body, core in zip(self.bodies, motion.core, strict=True):
+        for body, core in zip(self.course.bodies, motion.core, strict=True):
             y = core[: len(body.mass)]
             rate = core[d : d + len(body.mass)]
             stored += 0.5 * float(rate @ body.mass @ rate + y @ body.stiffness @ y)
@@ -194,7 +105,7 @@ class Stepper:
         done = int(self.motion.counts[0])
         self._hold(done + 1)
         stop = min(stop, self.end)
-        state, along = (self.system, self.motion, self.record), (self.shapes, self.slopes, self.offset)
+        state, along = (self.system, self.motion, self.record), (self.shapes, self.rates, self.offset)
         if not self.stepped:
             return bool(stepping.roll_prepared(*state, self.laid, *along, stop, largest))
         for step in range(done + 1, stop + 1):
@@ -211,11 +122,12 @@ class Stepper:
         if offset == self.offset:
             return
         self.offset, self.end = offset, min(offset + self.length, self.course.total)
-        count = self.end + 1 - offset
+        steps = range(offset, self.end + 1)
+        count = len(steps)
         if self.shapes.shape[2]:
-            self.course.shapes_into(offset, self.shapes[:count], self.slopes[:count])
+            self.course.write_shapes(steps, self.shapes[:count], self.rates[:count])
         if not self.stepped:  # one kernel serves any number and mix
-            self.laid = self.course.laid(offset, self.end + 1)
+            self.laid = self.course.laid(steps)
 
     def _solve(self, laws: Any, k: int, row: int, free: Free, load: float, guess: float) -> Found:
         """As `asperity.kernels.stepping.solve_prepared`, by any law.
@@ -224,7 +136,7 @@ class Stepper:
         """
         step = self.offset + row
         law = laws[k]
-        damping = float(self.laws[k].damping)
+        damping = float(self.course.laws[k].damping)
         solve = stepping.solve_law.py_func
         if isinstance(law, Prepared):
             in_flight = law.damped_in_flight
