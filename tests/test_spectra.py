@@ -117,17 +117,13 @@ test_what_is_wrong_is_said = refusals(
 
 
 def test_a_record_beyond_memory_is_a_mean_of_segments_that_fill_it(monkeypatch):
-    """Of at most 4 million samples each; its variance stays, and a shorter one is taken as it is."""
-    assert spectra.longest_segment(2**22) == 2**22
+    """Of at most a million samples each; its variance stays, and a shorter one is taken as it is."""
     for samples in (2**20 - 3, 2**20):
         assert spectra.longest_segment(samples) == samples
-    for samples in (1_299_709, 3_999_971):  # primes
+    for samples in (2**20 + 1, 1_299_709, 8_000_000, 33_554_432):
         length = spectra.longest_segment(samples)
-        assert 0.997 * samples <= length <= samples
-        assert next_fast_len(length) == length
-    for samples in (2**22 + 1, 8_000_000, 33_554_432):
-        length = spectra.longest_segment(samples)
-        assert length <= 2**22
+        assert 2**19 <= length <= 2**20
+        assert next_fast_len(length) < 1.01 * length
         advance = length - length // 2
         unused = (samples - length) % advance
         assert unused < 0.02 * samples

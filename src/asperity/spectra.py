@@ -77,25 +77,19 @@ def psd(signal: ArrayLike, spacing: float, *, segment: int | None = None) -> tup
     return np.asarray(np.fft.rfftfreq(length, spacing), dtype=np.float64), power
 
 
-LONGEST_SEGMENT = 2**22
-"""Samples that are transformed in one piece."""
+LONGEST_SEGMENT = 2**20
+"""Samples that are transformed in one piece: a transform takes four times their memory beside the record."""
 ROUND = 2**14
 """Numbers of samples that are multiples of this are transformed fast."""
-
-
-SLOW = 2**20
-"""Samples from which on a number with a large prime factor costs: three times the time, and seven times the
-memory of what is transformed."""
 
 
 def longest_segment(samples: int) -> int:
     """Samples of a segment by default: the whole record, of one of more than a million samples fewer.
 
-    Up to 4 million all but some thousandths at its end, so that it is quick to transform; beyond, segments
-    are as long as possible, and reach from its beginning nearly to its end.
+    Beyond, segments are as long as possible, and reach from its beginning nearly to its end.
     """
     if samples <= LONGEST_SEGMENT:
-        return samples if samples <= SLOW else quick_length(samples)
+        return samples
     segments = math.ceil(2 * samples / LONGEST_SEGMENT) - 1
     return 2 * samples // (segments + 1) // ROUND * ROUND
 

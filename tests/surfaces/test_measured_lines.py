@@ -1,5 +1,7 @@
 """Measured lines: processed after EN 15610, brought into register, laid out as a strip."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
@@ -11,6 +13,7 @@ from asperity.surfaces import measured_lines
 from asperity.surfaces.bands import band_levels_of, from_bands, strip_from_bands
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.measured_lines import bring_into_register, process, remove_spikes, roll_over, trim
+from asperity.surfaces.statistics import profile_statistics
 from like_measured import either, wheel_lines
 from refusals import refusals
 
@@ -239,3 +242,26 @@ def test_spikes_side_by_side_share_a_foot_and_go_as_one_by_one(monkeypatch):
     assert whole[1:] == single[1:]
     assert whole[1] == len(at)
     assert (whole[0].heights[at] < heights[at] - 50 * UM).all()
+
+
+@pytest.mark.parametrize(("evaluated", "most"), [
+    (lambda line: measured_lines.third_octaves([line, line]), 2.0),
+    (profile_statistics, 1.3),
+])  # fmt: skip
+def test_a_long_line_is_held_once_beside_itself(evaluated, most, monkeypatch):
+    """Levelled, processed or sorted, in place; all else is pieces of it, and masks of a byte a point."""
+    for name in ("levelling.PIECE", "statistics.PIECE", "measured_lines.TOGETHER"):
+        monkeypatch.setattr(f"asperity.surfaces.{name}", 2**11)
+    monkeypatch.setattr("asperity.spectra.LONGEST_SEGMENT", 2**11)
+    monkeypatch.setattr("asperity.spectra.ROUND", 2**7)
+    heights = 1e-6 * np.random.default_rng(0).normal(size=2**17)
+    heights[::5000] += 1e-3  # spikes
+    line = Profile(heights, 1e-3)
+    evaluated(Profile(heights[: 2**14], 1e-3))  # imports
+    tracemalloc.start()
+    try:
+        evaluated(line)
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert peak < most * heights.nbytes

@@ -69,7 +69,7 @@ def show_surface(
     if store is not None:
         write_bytes(store, recipes.recipe_text(typed).encode())
         say(f"Recipe: {store.resolve()}")
-    contents, spectra = _show(levelled, sizes["count"], title, picture, steps)
+    contents, spectra = _show(levelled, sizes["count"], title, picture, steps, psd)
     say(f"Picture: {picture.resolve()}")
     files = {"picture": picture}
     if psd:
@@ -128,9 +128,12 @@ def _side_by_side(surfaces: Surfaces, wanted: bool | None) -> tuple[Profile, ...
 
 
 def _show(
-    levelled: Surfaces, count: int, title: str, picture: Path, steps: recipes.Recipe
+    levelled: Surfaces, count: int, title: str, picture: Path, steps: recipes.Recipe, psd: bool
 ) -> tuple[dict[str, Any], Spectra]:
-    """Print what is in lines, or in the first of a count of maps, and draw it; return numbers and spectra."""
+    """Print what is in lines, or in the first of a count of maps, and draw it; return numbers and spectra.
+
+    With the areal one of a map where spectra are asked for.
+    """
     first = levelled[0]
     lines = [each for each in levelled if isinstance(each, Profile)]
     beside = len(lines) > 1
@@ -141,12 +144,10 @@ def _show(
         title += f", the first of {count} maps"
     (band, section), octaves = _filtered(first, steps), _third_octaves(lines)
     if isinstance(first, HeightMap):
-        heights = first.heights
         spectra = _spectra_of_map(first)
         items = [(item, item.value, item.value) for item in statistics.areal_statistics(first, band)]
-        chart = surface_chart(heights, first.spacing, spectra)
+        chart = surface_chart(first.heights, first.spacing, spectra)
     else:
-        heights = side_by_side([line.heights for line in lines])
         spectra = _spectra_of_lines(lines)
         items = statistics.line_statistics(lines, band, section)
         chart = lines_chart([line.heights for line in lines], first.spacing, spectra, octaves)
@@ -161,8 +162,9 @@ def _show(
         say(f"No {' and no '.join(slopes)}: slopes by ISO 4287 take {SLOPE_POINTS} points in a row.")
     homogeneous = _homogeneity(first)
     write_chart(chart, title, picture)
-    if isinstance(first, HeightMap) and spectra:
+    if isinstance(first, HeightMap) and spectra and psd:
         spectra[AREAL] = psd_radial(cleaning.nearly_complete(first) or first)
+    heights = side_by_side([each.heights for each in lines or levelled[:1]])
     rows = [asdict(item) | ({"lowest": low, "highest": high} if beside else {}) for item, low, high in items]
     return {"statistics": rows, "homogeneity": homogeneous} | _numbers(heights, octaves), spectra
 

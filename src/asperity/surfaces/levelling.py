@@ -40,7 +40,7 @@ def level(surface: S, degree: int | str = "plane") -> S:
     allowed = "0, the mean, or " + ", ".join(f'"{word}" (or {each})' for word, each in FORMS.items())
     offered = isinstance(degree, int | str | np.integer) and degree in degrees
     require(offered, "degree", shown(degree), allowed)
-    return replace(surface, heights=_without_polynomial(surface.heights, degrees[degree]))
+    return replace(surface, heights=without_polynomial(surface.heights, degrees[degree]))
 
 
 def band_limit(surface: S, longest: float | None = None, shortest: float | None = None) -> S:
@@ -136,11 +136,12 @@ def _resample_axis(heights: Array, old_step: float, new_step: float, axis: int) 
     return np.moveaxis(spline((np.arange(count) + 0.5) * new_step), -1, axis)
 
 
-def _without_polynomial(heights: Array, degree: int) -> Array:
+def without_polynomial(heights: Array, degree: int, *, into: Array | None = None) -> Array:
     """Heights, m, less the least-squares polynomial of a total degree through the valid points.
 
-    By normal equations, in pieces along the first axis: a Legendre basis on the grid is nearly orthogonal,
-    and large maps stay in memory.
+    Written into an array, which may be that of the heights; into a new one by default. By normal equations,
+    in pieces along the first axis: a Legendre basis on the grid is nearly orthogonal, and large maps stay in
+    memory.
     """
     powers = [p for p in product(range(degree + 1), repeat=heights.ndim) if sum(p) <= degree]
     received = f"{np.isfinite(heights).sum()} valid points"
@@ -166,7 +167,7 @@ def _without_polynomial(heights: Array, degree: int) -> Array:
         matrix += [[np.sum(a * b, where=known) for a in of_piece] for b in of_piece]
         right += [np.sum(term * heights[piece], where=known) for term in of_piece]
     weights = np.linalg.lstsq(matrix, right, rcond=None)[0]
-    left = np.empty(heights.shape)
+    left = np.empty(heights.shape) if into is None else into
     for piece in pieces(PIECE // 16):  # beside both arrays of heights, and in the processor's cache
         weighted = (w * term for w, term in zip(weights, terms(piece), strict=True))
         left[piece] = heights[piece] - sum(weighted, np.zeros(heights[piece].shape))

@@ -4,7 +4,7 @@ Later editions of the standard have not been compared.
 """
 
 import math
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain, pairwise
 
@@ -13,11 +13,13 @@ import scipy
 from scipy import fft
 
 from asperity.arguments import Array, NDArray, require
-from asperity.errors import CoarseSamplingWarning, PhysicsWarning
+from asperity.errors import CoarseSamplingWarning
 from asperity.reference.cnossos import rail_roughness
-from asperity.surfaces.bands import LIKELY_WAVELENGTHS, band_levels_of, likely_band
+from asperity.spectra import band_levels, psd
+from asperity.surfaces.bands import LIKELY_WAVELENGTHS, MICROMETRE, likely_band
 from asperity.surfaces.cleaning import nearly_complete
 from asperity.surfaces.heightmap import HeightMap, Profile
+from asperity.surfaces.levelling import without_polynomial
 from asperity.written_numbers import count_of, rounded
 
 ROLLED_RADIUS = 0.375
@@ -117,20 +119,40 @@ def remove_spikes(profile: Profile) -> tuple[Profile, int, int]:
     feet. EN 15610:2009 (spike removal): curvature and height are the standard's; the feet are our reading of
     where a spike ends.
     """
-    heights = profile.heights
-    count = len(profile.heights)
-    bend = np.diff(heights, 2)
+    cut = profile.heights.copy()
+    removed, changed = _cut_spikes(cut, profile.spacing)
+    cut.flags.writeable = False  # it need not be copied
+    return replace(profile, heights=cut), removed, changed
+
+
+def _sharp_and_feet(heights: Array, spacing: float) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Where a line (n,) bends as sharply as a spike, and where spikes may end, its own ends among them."""
+    count = len(heights)
     sharp = np.zeros(count, dtype=bool)
-    sharp[1:-1] = bend < SPIKE_CURVATURE * profile.spacing**2
-    foot = bend > 0.0
-    foot[1:] &= bend[1:] >= bend[:-1]
-    foot[:-1] &= bend[:-1] >= bend[1:]
-    del bend
-    feet = np.concatenate([[0], np.flatnonzero(foot) + 1, [count - 1]])
-    cut = heights.copy()
+    foot = np.zeros(count, dtype=bool)
+    foot[[0, -1]] = True
+    for first in range(1, count - 1, TOGETHER):
+        last = min(first + TOGETHER, count - 1)
+        start = max(first - 2, 0)
+        bend = np.diff(heights[start : last + 2], 2)
+        sharp[first:last] = bend[first - 1 - start :][: last - first] < SPIKE_CURVATURE * spacing**2
+        highest = bend > 0.0
+        highest[1:] &= bend[1:] >= bend[:-1]
+        highest[:-1] &= bend[:-1] >= bend[1:]
+        foot[first:last] = highest[first - 1 - start :][: last - first]
+    return sharp, foot
+
+
+def _cut_spikes(heights: Array, spacing: float) -> tuple[int, int]:
+    """Cut the spikes off a line (n,), m, in place; return how many, and of how many points."""
+    sharp, foot = _sharp_and_feet(heights, spacing)
     removed = 0
     changed = 0
-    for number in range(0, len(feet) - 1, TOGETHER) if sharp.any() else ():
+    if not sharp.any():
+        return removed, changed
+    feet = np.flatnonzero(foot)
+    del foot
+    for number in range(0, len(feet) - 1, TOGETHER):
         some = feet[number : number + TOGETHER + 1]
         first = some[0]
         last = some[-1]
@@ -138,13 +160,12 @@ def remove_spikes(profile: Profile) -> tuple[Profile, int, int]:
         chord = np.interp(np.arange(first, last), some, heights[some])
         rise = np.maximum.reduceat(heights[first:last] - chord, some[:-1] - first)
         spikes = np.logical_or.reduceat(sharp[first:last], some[:-1] - first)
-        spikes &= rise > (points * profile.spacing) ** 2 / SPIKE_SCALE
+        spikes &= rise > (points * spacing) ** 2 / SPIKE_SCALE
         within = np.repeat(spikes, points)
-        cut[first:last][within] = chord[within]
+        heights[first:last][within] = chord[within]
         removed = removed + int(spikes.sum())
         changed = changed + int((points[spikes] - 1).sum())
-    cut.flags.writeable = False  # it need not be copied
-    return replace(profile, heights=cut), removed, changed
+    return removed, changed
 
 
 def roll_over(profile: Profile, radius: float = ROLLED_RADIUS) -> Profile:
@@ -154,21 +175,27 @@ def roll_over(profile: Profile, radius: float = ROLLED_RADIUS) -> Profile:
     carries. EN 15610:2009 (curvature processing). Contact is found at points of the line: the height between
     them is off by at most spacing²/8R, 0.3 µm at 1 mm.
     """
-    heights = profile.heights
-    count = len(profile.heights)
-    depth = min(float(np.ptp(heights)), radius)
-    touched = math.ceil(math.sqrt(depth * (2.0 * radius - depth)) / profile.spacing)
-    reach = min(touched, math.floor(radius / profile.spacing), count - 1)
-    across = np.arange(reach + 1) * profile.spacing
-    circle = np.sqrt(np.maximum(radius**2 - across**2, 0.0)) - radius
-    rolled = np.empty(count)
-    step = max(TOGETHER, 2 * reach)
-    for first in range(0, count, step):
-        before = max(first - reach, 0)
-        envelope = _upper_envelope(heights[before : first + step + reach], circle)
-        rolled[first : first + step] = envelope[first - before :][:step]
+    rolled = profile.heights.copy()
+    _lift_to_circle(rolled, profile.spacing, radius)
     rolled.flags.writeable = False  # it need not be copied
     return replace(profile, heights=rolled)
+
+
+def _lift_to_circle(heights: Array, spacing: float, radius: float) -> None:
+    """Roll a circle over a line (n,), m, in place."""
+    count = len(heights)
+    depth = min(float(np.ptp(heights)), radius)
+    touched = math.ceil(math.sqrt(depth * (2.0 * radius - depth)) / spacing)
+    reach = min(touched, math.floor(radius / spacing), count - 1)
+    across = np.arange(reach + 1) * spacing
+    circle = np.sqrt(np.maximum(radius**2 - across**2, 0.0)) - radius
+    step = max(TOGETHER, 2 * reach)
+    before = heights[:0]
+    for first in range(0, count, step):
+        envelope = _upper_envelope(np.append(before, heights[first : first + step + reach]), circle)
+        skipped = len(before)
+        before = heights[first + step - reach : first + step].copy()  # as they were, for the next piece
+        heights[first : first + step] = envelope[skipped:][:step]
 
 
 def _upper_envelope(heights: Array, arc: Array) -> Array:
@@ -234,9 +261,8 @@ def third_octaves(lines: Sequence[Profile]) -> ThirdOctaves | None:
     full = full_lines(lines)
     if not full or 4.0 * full[0].spacing > LIKELY_WAVELENGTHS[1] or full[0].size < LIKELY_WAVELENGTHS[0]:
         return None
-    with PhysicsWarning.ignored():  # of a spacing beyond 1 mm
-        wavelength, before = _levels([line.levelled() for line in full])
-        _, after = _levels([line.levelled() for line in process(full)[0]])
+    wavelength, before = _levels(line.levelled() for line in full)
+    _, after = _levels(map(_processed_and_levelled, full))
     nominal, limits = rail_roughness("iso3095")
     nominal, limits = nominal[likely_band(nominal)], limits[likely_band(nominal)]
     same = np.abs(np.log10(wavelength[:, None] / nominal)) < 0.03
@@ -245,13 +271,25 @@ def third_octaves(lines: Sequence[Profile]) -> ThirdOctaves | None:
     return None if few else ThirdOctaves(wavelength, before, after, limit)
 
 
-def _levels(lines: list[Profile]) -> tuple[Array, Array]:
-    """Wavelengths, m, and levels, dB re 1 µm, of levelled lines, mean over their powers."""
-    if len(lines) == 1:
-        return band_levels_of(lines[0])
-    heights = np.array([line.heights for line in lines])
-    spacing = lines[0].spacing
-    return band_levels_of(HeightMap(heights.T, (spacing, spacing)))
+def _processed_and_levelled(line: Profile) -> Profile:
+    """A complete line without spikes, rolled over and levelled: held once, however long."""
+    heights = line.heights.copy()
+    _cut_spikes(heights, line.spacing)
+    _lift_to_circle(heights, line.spacing, ROLLED_RADIUS)
+    return replace(line, heights=without_polynomial(heights, 1, into=heights))
+
+
+def _levels(lines: Iterable[Profile]) -> tuple[Array, Array]:
+    """Wavelengths, m, and levels, dB re 1 µm, of levelled lines, mean over their powers; made one by one."""
+    total = np.zeros(())
+    count = 0
+    for line in lines:
+        wavenumber, density = psd(line.heights, line.spacing)
+        total = total + density
+        count += 1
+        del line, density  # before the next one is made
+    centres, levels = band_levels(wavenumber, total / count, MICROMETRE)
+    return 1.0 / centres, levels
 
 
 def lines_of(surface: HeightMap) -> tuple[Profile, ...]:

@@ -238,15 +238,34 @@ def stratified(heights: Array, mean: float = 0.0) -> dict[str, float]:
     width = min(max(2, round(CORE * count)), count - 1)
     first = _flattest(falling, width)
     core = falling[first : first + width + 1]
-    about = (np.arange(width + 1) - 0.5 * width) / count
-    slope = float(about @ core / (about @ about))
+    slope = _slope_over(core, 1.0 / count)
     top = float(core.mean()) - slope * (first + 0.5 * width + 0.5) / count
     bottom = top + slope
-    above = falling[: count - np.searchsorted(rising, top, side="right")] - top
-    below = bottom - rising[: np.searchsorted(rising, bottom, side="left")]
-    peaks, valleys = (2.0 * float(each.mean()) if each.size else 0.0 for each in (above, below))
+    above = falling[: count - np.searchsorted(rising, top, side="right")]
+    below = rising[: np.searchsorted(rising, bottom, side="left")]
+    peaks = 2.0 * _mean_beyond(above, top) if above.size else 0.0
+    valleys = -2.0 * _mean_beyond(below, bottom) if below.size else 0.0
     ratios = {"mr1": above.size / count, "mr2": 1.0 - below.size / count}
     return {"k": top - bottom, "pk": peaks, "vk": valleys} | ratios
+
+
+def _slope_over(values: Array, step: float) -> float:
+    """Slope of the line of least squares through values (n,) a step apart, piece by piece."""
+    middle = 0.5 * (len(values) - 1)
+    along = 0.0
+    squares = 0.0
+    for first in range(0, len(values), PIECE):
+        piece = values[first : first + PIECE]
+        about = (np.arange(first, first + len(piece)) - middle) * step
+        along += float(about @ piece)
+        squares += float(about @ about)
+    return along / squares
+
+
+def _mean_beyond(values: Array, level: float) -> float:
+    """Mean of values (n,) less a level, piece by piece."""
+    pieces = (values[first : first + PIECE] for first in range(0, len(values), PIECE))
+    return sum(float((piece - level).sum()) for piece in pieces) / len(values)
 
 
 def _flattest(falling: Array, width: int) -> int:
