@@ -1,8 +1,8 @@
 """What is read from the signal of a bearing: which part is struck, at which speed, and how sure that is.
 
 Spectra of the signal and of its envelope (`envelopes`), the band that rings (`kurtogram`), lines where they
-are expected (`lines`), over orders where the speed changes (`orders`), what else stands out (`prominence`), what it may mean (`hypotheses`), and what is said
-of it (`decision`, `confidence`, `verdict`).
+are expected (`lines`), over orders where the speed changes (`orders`), what else stands out (`prominence`),
+what it may mean (`hypotheses`), and what is said of it (`decision`, `confidence`, `verdict`).
 """
 
 from asperity.diagnostics.decision import Diagnosis, diagnose, diagnose_together
