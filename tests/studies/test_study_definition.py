@@ -94,6 +94,7 @@ def test_ranges_have_steps_ratios_or_whole_numbers():
     words = ["speed = 80..300 km/h, 6 steps, 1 m/s", "seed=7, 1..3", "ball.load = 5 N, 10..80 N, 4 ratios"]
     speed, seed, load = varied("ball.toml", words).axes
     assert speed.variable.values == pytest.approx([*np.linspace(80, 300, 6) / 3.6, 1.0])
+    assert expanded("x", "600..1800 1/min, 3 steps") == ["600 1/min", "1200 1/min", "1800 1/min"]
     assert speed.variable.attrs["typed_unit"] == "km/h"
     assert seed.values == (7, 1, 2, 3)
     assert load.variable.values == pytest.approx([5, 10, 20, 40, 80])

@@ -145,15 +145,30 @@ class BearingKeys(BearingGeometry):
         "it stands still",
         SPEEDS,
     )
+    contact_damping: float = key(DAMPING, "0 N s/m", "damping of each contact, for --table", _DAMPED)
+
+
+CARRIED = {"radial": "N", "axial": "N", "speed": "Hz", "contact_damping": "N s/m"}
+"""Keys of `BearingKeys` that a case has, too, in SI."""
+
+
+def _of_case(keys: dict[str, Any], source: str) -> dict[str, Any]:
+    """Bearing and load of a file; of a case that is read as one what concerns them."""
+    if "kind" not in keys:
+        return keys
+    case = BearingUnderLoad.read(keys, Origin.file(source))
+    carried = {name: f"{getattr(case, name)!r} {unit}" for name, unit in CARRIED.items()}
+    return dict(keys.get("bearing", {})) | carried
 
 
 def read_bearing(source: str, options: Mapping[str, Any]) -> BearingKeys:
-    """Read a bearing by its name, or from a TOML file; options, as they are typed, are stronger."""
+    """Read a bearing by its name, or from a TOML file or case; options, as they are typed, are stronger."""
     keys: dict[str, Any] = {"name": source}
     if source not in LISTED:
         definition = toml.read_definition(source, "bearing", named_bearings(source))
         keys = toml.read_toml(definition, "bearing", source)
         toml.refuse_vast(keys, source)
+        keys = _of_case(keys, source)
     return BearingKeys.read(keys | {k: v for k, v in options.items() if v is not None}, Origin.file(source))
 
 

@@ -177,11 +177,7 @@ def bearing(
     more: tuple[Path, ...],
     picture: Path | None,
     signal: tuple[Path, ...],
-    radial: str | None,
-    axial: str | None,
-    speed: str | None,
-    clearance: str | None,
-    **hints: Any,
+    **choices: Any,
 ) -> Document:
     """Say how a ball bearing carries a load at rest, and its tones; or which of them a signal holds.
 
@@ -200,13 +196,14 @@ def bearing(
     asperity bearing own.toml --axial '50 N' -o load.png
     # is there a fault? lines of the envelope beside those expected
     asperity bearing 6205 --speed '1797 1/min' --signal run.npz --rate '12 kHz' -o envelope.png
+    # stiffness over load and speed, for a program of rotors
+    asperity bearing 7205C --axial '100..500 N, 5 steps' --speed '0..9000 1/min, 4 steps' --table k.csv
     # several files of one measurement: each one, and all together
     asperity bearing 6205 --speed '1797 1/min' --signal run-1.wav run-2.wav run-3.wav
     """
     from asperity.cli.bearing import show_bearing
 
-    options = {"radial": radial, "axial": axial, "speed": speed, "clearance": clearance}
-    return show_bearing(bearing, signal, more, picture, options, **hints)
+    return show_bearing(bearing, signal, more, picture, **choices)
 
 
 @_begin(

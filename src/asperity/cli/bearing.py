@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from asperity.case.ball_bearing import BearingKeys, read_bearing
+from asperity.cli.bearing_table import write_table
 from asperity.cli.heard import heard
 from asperity.diagnostics.decision import NAMES
 from asperity.errors import InputError
@@ -25,6 +26,8 @@ TOLD = ("balls", "displacement", "stiffness", "imbalance", "tones", "speed", "sp
         "faults", "confidence", "resolution", "turns", "doubts", "signals", "verdict",
         "catalogue")  # fmt: skip
 """Names of what is said to programs."""
+OPTIONS = ("radial", "axial", "speed", "clearance", "contact_damping")
+"""Keys of a bearing and its load that are options, too."""
 MEANINGS = {
     "outer": "BPFO: balls pass a spot of it",
     "inner": "BPFI: balls pass a spot of it",
@@ -37,15 +40,19 @@ def show_bearing(
     signals: Sequence[Path],
     more: Sequence[Path],
     picture: Path | None,
-    options: dict[str, Any],
     *,
     listed: bool = False,
-    **hints: Any,
+    table: Path | None = None,
+    cage_angle: str | None = None,
+    load_direction: str | None = None,
+    **choices: Any,
 ) -> dict[str, Any]:
     """Print what a bearing does under its load, or what its signals say, and draw it; return the numbers.
 
-    Or list all bearings that have a name. `more` are signals behind the first one.
+    Or list all bearings that have a name, or write its stiffness over load and speed to a table. `more` are
+    signals behind the first one.
     """
+    options = {name: choices.pop(name, None) for name in OPTIONS}
     if listed:
         return _listed()
     if source is None:
@@ -53,6 +60,19 @@ def show_bearing(
     if more and not signals:
         received = " and ".join([source, *map(str, more)])
         raise InputError("bearing", received, "one", "Files of signals follow --signal.")
+    if table is not None:
+        if signals or picture is not None:
+            raise InputError("--table", "--signal or a picture with it", "loads and speeds alone")
+        told = write_table(source, options, table, cage_angle, load_direction)
+        return {"bearing": source, **dict.fromkeys(TOLD), **told}
+    alone = {
+        "--cage-angle": cage_angle,
+        "--load-direction": load_direction,
+        "--damping": options["contact_damping"],
+    }
+    for name, given in alone.items():
+        if given is not None:
+            raise InputError(name, f"'{given}'", "--table FILE with it")
     keys = read_bearing(source, options)
     of = keys.bearing
     name = keys.name or source
@@ -64,7 +84,7 @@ def show_bearing(
     )
     if keys.name:
         say(LISTED[keys.name].sentence)
-    told = heard(keys, (*signals, *more), picture, **hints) if signals else _carried(keys, picture)
+    told = heard(keys, (*signals, *more), picture, **choices) if signals else _carried(keys, picture)
     if picture is not None:
         told["files"] = {"picture": picture}
     return {"bearing": name, **dict.fromkeys(TOLD), **told}

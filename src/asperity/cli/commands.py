@@ -387,6 +387,20 @@ BEARING = [
         type=click.Choice(["outer", "inner", "ball"]),
         help="Part that is known to have a fault: whether the record shows it is said.",
     ),
+    click.Option(
+        ["--table"],
+        type=PATH,
+        metavar="FILE",
+        help="Write stiffness and damping matrices over lists or ranges of --radial, --axial and --speed, as "
+        "'100..500 N, 5 steps': .csv, or .json with elements for ROSS.",
+    ),
+    click.Option(["--damping", "contact_damping"], help="Of each contact, for --table, as '20 N s/m'."),
+    click.Option(
+        ["--cage-angle"], help="Angles of the cage for --table, as '0..40 deg, 5 steps'. [default: means]"
+    ),
+    click.Option(
+        ["--load-direction"], help="Of the radial load from x towards y, for --table, as '-90 deg'."
+    ),
     click.Option(["--list", "listed"], is_flag=True, help="List all NAMEs, and where they are printed."),
 ]
 """What a bearing carries, and where its signal is."""

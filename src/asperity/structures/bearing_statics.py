@@ -84,6 +84,49 @@ class LoadedBearing:
         of = self.bearing
         return {"inner": (of.inner_contact, self.inner_load), "outer": (of.outer_contact, self.outer_load)}
 
+    def damping(self, of_contact: float) -> Array:
+        """Damping matrices of the inner ring by dampers of the contacts along their normals.
+
+        Parameters
+        ----------
+        of_contact : float
+            Damping of one contact, N s/m.
+
+        Returns
+        -------
+        ndarray (m, 3, 3)
+            In the directions of `displacement`; symmetric.
+
+        Notes
+        -----
+        To first order in the frequency, far below that at which balls ring between the rings: a ball follows
+        as it does at rest, b = S u with S = (K_i + K_o)⁻¹ K_i, and the dampers of both its contacts dissipate
+        what (I − S)ᵀ C_i (I − S) + Sᵀ C_o S says.
+        """
+        of_contact = not_negative("damping of a contact (N s/m)", of_contact)
+        inner = self._links(self.inner_load, self.inner_angle, self.bearing.inner_conformity, "inner")
+        outer = self._links(self.outer_load, self.outer_angle, self.bearing.outer_conformity, "outer")
+        held = np.where((self.outer_load > 0.0)[..., None, None], inner[0] + outer[0], np.eye(2))
+        follows = np.linalg.solve(held, inner[0])
+        left = np.eye(2) - follows
+        turned = np.swapaxes(left, -1, -2) @ inner[1] @ left
+        turned = turned + np.swapaxes(follows, -1, -2) @ outer[1] @ follows
+        moved = _moved(self.azimuth)
+        return of_contact * np.einsum("mzik,mzij,mzjl->mkl", moved, turned, moved)
+
+    def _links(self, load: Array, angle: Array, conformity: float, ring: str) -> tuple[Array, Array]:
+        """Stiffness of contacts in the plane of the axis (m, Z, 2, 2), N/m, and n nᵀ of those that touch."""
+        contact = self._contacts[ring][0]
+        overlap = (load / contact.stiffness_constant) ** (2.0 / 3.0)
+        touching = load > 0.0
+        there = np.where(touching, angle, 0.0)
+        normal = np.stack([np.cos(there), np.sin(there)], axis=-1)
+        along = np.where(touching, 1.5 * load / np.where(touching, overlap, 1.0), 0.0)
+        across = load / ((conformity - 0.5) * self.bearing.ball_diameter + overlap)
+        outer = normal[..., :, None] * normal[..., None, :]
+        stiffness = (along - across)[..., None, None] * outer + across[..., None, None] * np.eye(2)
+        return stiffness, touching[..., None, None] * outer
+
     @property
     def touching(self) -> Array:
         """How many balls touch the inner ring, at each angle of the cage (m,)."""
@@ -209,13 +252,19 @@ class _Balls:
         return inner[0] + outer[0] - self.lift * ball[..., 0], gradient, inner[2] + outer[2]
 
 
-def _solved(bearing: BallBearing, radial: float, axial: float, speed: float, angles: Array) -> LoadedBearing:
-    """The inner ring in balance at each angle of the cage."""
-    azimuth = angles[:, None] + 2.0 * math.pi / bearing.balls * np.arange(bearing.balls)
-    moved = np.zeros((*azimuth.shape, 2, 3))  # how the stretch follows the inner ring
+def _moved(azimuth: Array) -> Array:
+    """How the stretch of a ball at an azimuth, radial and axial, follows the inner ring (m, Z, 2, 3)."""
+    moved = np.zeros((*azimuth.shape, 2, 3))
     moved[..., 0, 0] = np.cos(azimuth)
     moved[..., 0, 1] = np.sin(azimuth)
     moved[..., 1, 2] = 1.0
+    return moved
+
+
+def _solved(bearing: BallBearing, radial: float, axial: float, speed: float, angles: Array) -> LoadedBearing:
+    """The inner ring in balance at each angle of the cage."""
+    azimuth = angles[:, None] + 2.0 * math.pi / bearing.balls * np.arange(bearing.balls)
+    moved = _moved(azimuth)
     A = bearing.groove_distance
     load = np.array([radial, 0.0, axial])
     rest = np.array([A - 0.5 * bearing.radial_clearance, 0.0])

@@ -23,7 +23,7 @@ from asperity.written_numbers import count_of
 
 _NUMBER = r"[+-]?(?:\d++\.?\d*+|\.\d++)(?:[eE][+-]?\d++)?"
 _RANGE = re.compile(
-    rf"\s*({_NUMBER})\s*\.\.\s*({_NUMBER})\s*([^\d\s,][^,]{{0,40}})?(?:,\s*(\d{{1,5}})\s*(steps|ratios))?\s*"
+    rf"\s*({_NUMBER})\s*\.\.\s*({_NUMBER})\s*((?:1/)?[^\d\s,][^,]{{0,40}})?(?:,\s*(\d{{1,5}})\s*(steps|ratios))?\s*"
 )
 _BETWEEN = re.compile(r",(?!\s*\d+\s*(?:steps|ratios)\s*(?:,|$))")
 """Commas between the values of a list, but for that before the number of steps."""
