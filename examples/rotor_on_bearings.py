@@ -28,16 +28,16 @@ axes.legend(ncols=3)
 plt.show()
 
 # %%
-# A light preload loses its stiffness with speed, a heavy one does not. Without a radial load nothing couples x
-# and y.
+# A light preload loses its stiffness with speed, a heavy one does not. Without a radial load nothing couples
+# x and y.
 
 assert (np.diff(radial[0]) < 0.0).all()
 assert radial[0, -1] < 0.5 * radial[0, 0] < radial[2, -1]
 assert np.allclose(table.stiffness[..., 0, 1], 0.0)
 
 # %%
-# Each combination of loads is an element of ROSS over rad/s. A shaft that is stiff beside its bearings, with a
-# mass M in its middle, has the frequency sqrt(2 k/M)/2π; that of a shaft of 25 mm lies below it.
+# Each combination of loads is an element of ROSS over rad/s. A shaft that is stiff beside its bearings, with
+# a mass M in its middle, has the frequency sqrt(2 k/M)/2π; that of a shaft of 25 mm lies below it.
 
 element = next(each for each in table.elements() if each["load"]["axial"] == 150.0)
 coefficients = {name: values for name, values in element.items() if name != "load"}
