@@ -201,21 +201,12 @@ def motion_entry(held: Mapping[Any, Any]) -> Entry | None:
     return next(fitting, None)
 
 
-def contact_forces(tree: DataTree) -> Array:
-    """Forces of all contacts in time (laws, contacts, n), N: of a bearing of all balls with both rings."""
-    held = tree[rolling.CONTACT_FORCE.group].to_dataset()
-    if rolling.CONTACT_FORCE.name in held:
-        return np.asarray(held[rolling.CONTACT_FORCE.name].values)
-    rings = (bearing.INNER_FORCE, bearing.OUTER_FORCE)
-    return np.concatenate([held[each.name].values for each in rings], axis=1)
-
-
 def halves(tree: DataTree, step: float, highest: float) -> tuple[xarray.Dataset, xarray.Dataset]:
     """Levels of the force over all of a record and over its first half, from segments of one length.
 
     An `InputError` says that the half holds no one-third octave up to the highest frequency.
     """
-    force = contact_forces(tree)
+    force = np.asarray(tree[rolling.CONTACT_FORCE.path].values)
     half = force.shape[-1] // 2
     segment = min(spectrum_segment(force.shape[-1], step), half)
     lowest = lowest_band(half, step, segment=segment)

@@ -22,7 +22,7 @@ from asperity.netcdf import (
     write_netcdf,
 )
 from asperity.sandbox import Answer, sandboxed
-from asperity.schema import VERSION, provenance
+from asperity.schema import VERSION, VIEW_OF, bearing, provenance
 
 if TYPE_CHECKING:
     import xarray
@@ -78,9 +78,11 @@ def save(tree: xarray.DataTree, path: str | os.PathLike[str]) -> Path:
 
 
 def _storable(tree: xarray.DataTree) -> xarray.DataTree:
-    """Spell out what UTF-8 does not have, as bytes in names of files, in the words of a tree."""
+    """Leave views out, and spell out what UTF-8 does not have, as bytes in names of files, in words."""
     tree = tree.copy()
     for node in tree.subtree:
+        views = [name for name, values in node.data_vars.items() if VIEW_OF in values.attrs]
+        node.dataset = node.to_dataset(inherit=False).drop_vars(views)
         words = {name: value for name, value in node.attrs.items() if isinstance(value, str)}
         spelled = {name: word.encode(errors="backslashreplace").decode() for name, word in words.items()}
         node.attrs = node.attrs | spelled
@@ -133,7 +135,7 @@ def _decoded(path: Path, tree: xarray.DataTree) -> xarray.DataTree:
 
     try:
         found = {node.path: xarray.decode_cf(node.to_dataset(inherit=False)) for node in tree.subtree}
-        return xarray.DataTree.from_dict(found).load()
+        return bearing.with_ring_forces(xarray.DataTree.from_dict(found).load())
     except Exception as error:  # xarray raises errors of many kinds on what does not fit together
         raise InputError(str(path), f"a damaged file ({reason(error)})", _ALLOWED, _AGAIN) from error
 

@@ -6,13 +6,14 @@ import sys
 from dataclasses import replace
 from types import SimpleNamespace
 
+import h5py
 import numpy as np
 import pytest
 
 import asperity
 from asperity import laws
 from asperity.case.cases import as_case
-from asperity.errors import CaseError, ComputationError, OutOfRangeWarning, percent
+from asperity.errors import CaseError, ComputationError, InputError, OutOfRangeWarning, percent
 from asperity.parameters import Number, key
 from asperity.reference.materials import MATERIALS
 from asperity.running import prepare_case
@@ -31,6 +32,7 @@ from small_cases import BEARING
 D, PITCH, BALLS, TURNS = 7.94e-3, 39.04e-3, 9, 30.0
 RATE = 51_200.0
 SMOOTH, PIT = {name: each for name, each in BEARING.items() if name != "fault"}, BEARING["fault"]
+B6205 = asperity.BallBearing.named("6205")
 OUTER = 0.5 * BALLS * TURNS * (1.0 - D / PITCH)
 INNER = 0.5 * BALLS * TURNS * (1.0 + D / PITCH)
 
@@ -312,6 +314,36 @@ def test_forces_that_leave_the_states_scanned_have_more_scanned_and_are_those_of
     np.testing.assert_array_equal(failed, every)  # what fails in the states expected is rolled over all
 
 
+def test_forces_of_a_bearing_stand_by_contact_each_a_ball_on_a_ring(runs, tmp_path):
+    """Those on the inner ring carry the load; on the outer one balls press by centrifugal force, too."""
+    tree = runs(BEARING)
+    found = group(tree, "rolling")
+    assert found["contact_force"].dims == ("law", "contact", "time")
+    main = found["contact_force"].values[0]
+    means = {}
+    for ring in ("inner", "outer"):
+        on_it = found["contact_ring"].values == ring
+        azimuth = found["ball_azimuth"].sel(ball=found["contact_ball"].values[on_it]).values
+        carried = np.sum(main[on_it] * [np.cos(azimuth), np.sin(azimuth)], axis=1)
+        assert carried.mean(axis=1) == pytest.approx([100.0, 0.0], abs=1.0)
+        means[ring] = main[on_it].mean()
+    pressing = B6205.centrifugal_force(TURNS)
+    assert means["outer"] - means["inner"] == pytest.approx(pressing, rel=0.02)
+    path = asperity.save(tree, tmp_path / "run.nc")
+    with h5py.File(path) as file:
+        assert {name for name in file["rolling"] if name.endswith("_force")} == {"contact_force"}
+    again = asperity.open_result(path)
+    assert again.identical(tree)
+    earlier = again["rolling/outer_force"]  # as scripts of before call it
+    assert earlier.dims == ("law", "ball", "time")
+    np.testing.assert_array_equal(earlier.values[0], main[found["contact_ring"].values == "outer"])
+    assert np.shares_memory(earlier.values, again["rolling/contact_force"].values)
+    again["rolling/contact_ring"][:] = "inner"
+    asperity.save(again, path)
+    with pytest.raises(InputError, match="a damaged file"):
+        asperity.open_result(path)
+
+
 def test_no_force_is_written_below_zero_where_a_ball_leaves_the_ring(runs):
     """The filter that thins a record rings where a force begins or ends at once: by newtons at a pit."""
     found = group(runs(BEARING), "rolling")
@@ -457,7 +489,7 @@ def test_levels_of_a_bearing_hold_the_energy_of_its_forces_and_its_acceleration(
     tree = runs(BEARING)
     found, moved = group(tree, "spectra"), group(tree, "rolling")
     begin, end = found["band"].values[[0, -1]] * 10.0 ** np.array([-0.05, 0.05])
-    forces = np.concatenate([moved[f"{ring}_force"].values[0] for ring in ("inner", "outer")])
+    forces = moved["contact_force"].values[0]
     for records, level in (
         (forces, found["force_level"].values[0]),
         (moved["ring_acceleration"].values[0] / 1e-6, found["ring_acceleration_level"].values[0, 0]),

@@ -14,7 +14,7 @@ from xarray import DataArray, DataTree
 
 from asperity.errors import InputError
 from asperity.reporting import chart
-from asperity.schema import Attribute, Entry, provenance, rolling, spectra
+from asperity.schema import Attribute, Entry, bearing, provenance, rolling, spectra
 from asperity.spectra import nominal, say_little
 from asperity.units import quantity
 from asperity.written_numbers import PREFIXES as PREFIXES
@@ -81,6 +81,17 @@ def words(tree: DataTree, entry: Entry) -> list[str]:
 def present(tree: DataTree, *entries: Entry) -> bool:
     """Whether every one of `entries` is a variable with at least one finite number."""
     return all(_is_stored(tree, entry) for entry in entries)
+
+
+def is_of_bearing(tree: DataTree) -> bool:
+    """Whether a result is that of a ball bearing, whose contacts go round on their raceways."""
+    return present(tree, bearing.BALL_LOAD)
+
+
+def leave_to_bearing(tree: DataTree) -> None:
+    """Leave out, as `Missing`, what is told of contacts on a path: a bearing has chapters of its own."""
+    if is_of_bearing(tree):
+        raise Missing(bearing.BALL_LOAD.path)
 
 
 def missing(tree: DataTree, *entries: Entry) -> str:
@@ -219,9 +230,10 @@ def _contacts_of(tree: DataTree) -> int:
 
 
 def of_first_contact(tree: DataTree) -> str:
-    """Say of what is shown of the first of several contacts that it is; nothing of a single one."""
+    """Say of what is shown of the first of several contacts on a path that it is."""
     count = _contacts_of(tree)
-    return f"Of contact 1 of {count}; the others are in the chapter All contacts." if count > 1 else ""
+    others = count > 1 and not is_of_bearing(tree)  # of which levels are those of all
+    return f"Of contact 1 of {count}; the others are in the chapter All contacts." if others else ""
 
 
 def doubtful(tree: DataTree, product: Entry) -> chart.Flags:

@@ -151,6 +151,7 @@ class Answers:
 
 def force_answers(tree: DataTree) -> Answers:
     """Force of the main law at all contacts, and its losses of contact."""
+    data.leave_to_bearing(tree)
     main = data.main_law(tree, rolling.CONTACT_FORCE)
     forces = data.of_contacts(tree, rolling.CONTACT_FORCE, main)
     count = len(forces)

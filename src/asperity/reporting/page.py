@@ -17,7 +17,7 @@ from asperity.reporting import data, headline, payload
 from asperity.reporting.chart import Line, colour_variables
 from asperity.reporting.figure import Chapter, Figure, PageFigure
 from asperity.reporting.tables import ReportTable, setting_names
-from asperity.schema import provenance, rolling
+from asperity.schema import provenance
 from asperity.written_numbers import unbroken
 
 Block = PageFigure | ReportTable
@@ -172,7 +172,6 @@ def page(
     differing = [f"{each.get('key', '')} = {each.get('value', '')}" for each in changed[:CHANGES]]
     differing += [f"and {len(changed) - CHANGES} more"] if len(changed) > CHANGES else []
     verdict = str(data.stated(tree, provenance.VERDICT) or "")
-    force = rolling.CONTACT_FORCE
     seed = data.stated(tree, provenance.SEED)
     button = (files("asperity.reporting") / "summary.js").read_text(encoding="utf-8")
     blocks = [block for section in shown for block in section.blocks]
@@ -185,7 +184,7 @@ def page(
         summary=summary,
         on_sheet={figure.name for figure in on_sheet},
         answers=answers,
-        verdict=verdict if data.present(tree, force) else "",  # of a bearing it stands at the top
+        verdict="" if data.is_of_bearing(tree) else verdict,  # of a bearing it stands at the top
         validity=headline.validity(checks),
         lights=checks,
         version=data.stated(tree, provenance.ASPERITY_VERSION) or "unknown",

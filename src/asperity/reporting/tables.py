@@ -367,6 +367,7 @@ Known = tuple[str, str, str]
 
 def uncertainty_table(tree: DataTree) -> ReportTable:
     """What is known of the uncertainty of force levels."""
+    data.leave_to_bearing(tree)
     main = data.main_law(tree, rolling.CONTACT_FORCE)
     sources, sizes, ways = zip(*_law(tree, main), *_chance(tree), strict=True)
     note = (

@@ -81,7 +81,8 @@ def bearing_result(
     scenario = scenario_group(case, numerics)
     scenario[contact.VALIDITY] = [finding.row() for finding in found]
     at_rest = static_group(case.static, case.kinematics)
-    result = tree(scenario | at_rest | motion_group(case, runs) | heard | seen.values | apart)
+    laid_out = scenario | at_rest | motion_group(case, runs) | heard | seen.values | apart
+    result = bearing.with_ring_forces(tree(laid_out))
     result.attrs = root_attributes(
         case,
         case.title,
@@ -161,8 +162,10 @@ def motion_group(case: BearingUnderLoad, runs: dict[str, RolledBearing]) -> Valu
         bearing.ROLLING_DIRECTION: list(DIRECTIONS),
         bearing.ROLLING_SENSOR: case.sensors,
         bearing.BALL_AZIMUTH: first.cage + 2.0 * np.pi / len(balls) * balls[:, None],
-        bearing.INNER_FORCE: stacked("inner_force"),
-        bearing.OUTER_FORCE: stacked("outer_force"),
+        rolling.CONTACT: 1 + np.arange(len(RINGS) * len(balls)),
+        bearing.CONTACT_RING: np.repeat(RINGS, len(balls)),
+        bearing.CONTACT_BALL: 1 + np.tile(balls, len(RINGS)),
+        rolling.CONTACT_FORCE: stacked("contact_force"),
         bearing.BALL_MOTION: stacked("ball_motion"),
         bearing.RING_MOTION: np.stack([stacked(f"{ring}_motion") for ring in RINGS], axis=1),
         bearing.RING_ACCELERATION: stacked("acceleration"),

@@ -250,7 +250,7 @@ class Result(xarray.DataTree):  # type: ignore[no-untyped-call]
 
     def _repr_html_(self) -> str:
         tree: str = super()._repr_html_()  # type: ignore[no-untyped-call]
-        rolled = data.present(self, rolling.CONTACT_FORCE) or data.present(self, of_bearing.BALL_LOAD)
+        rolled = data.present(self, rolling.CONTACT_FORCE) or data.is_of_bearing(self)
         if data.stated(self, provenance.VERDICT) is None or not rolled:
             return tree
         title, verdict = (

@@ -17,9 +17,11 @@ if TYPE_CHECKING:
     import xarray
     from numpy.typing import ArrayLike
 
-VERSION = 3
+VERSION = 4
 """Of the schema, in every result. Raise it where a name, dimension, unit or meaning changes or goes."""
 UNKNOWN = "no reason is known"
+VIEW_OF = "view_of"
+"""Attribute of a variable that stands in memory alone: the variable of the file that it is a part of."""
 _PLACE = re.compile(r"\w+(\(\w+(, \w+)*\))?")
 _PLACES = 'a name, or a name with its dimensions, as "force" or "force(law, contact, time)"'
 _NUMBER = "What has no dimension is an asperity.schema.Attribute."

@@ -1,8 +1,12 @@
 """A ball bearing that runs: how it carries its load, what moves, how quiet it is, which part is heard."""
 
 from functools import partial
+from typing import TYPE_CHECKING
 
-from asperity.schema import Attribute, Entry, spectra
+from asperity.schema import VIEW_OF, Attribute, Entry, rolling, spectra
+
+if TYPE_CHECKING:
+    from xarray import DataTree
 
 OF_BEARING = "of a ball bearing"
 _bearing, _rolling, _spectra = (
@@ -53,10 +57,21 @@ CAGE = _fact("cage_frequency", "Hz", "turns of the cage, in pure rolling")
 _SENSOR = "angle of an accelerometer on the outer ring from the radial load"
 SENSOR, ROLLING_SENSOR = (each("ring_sensor", "rad", _SENSOR) for each in (_bearing, _rolling))
 BALL_AZIMUTH = _rolling("ball_azimuth(ball, time)", "rad", "angle of a ball from the radial load, counted on")
+CONTACT_RING = _rolling("contact_ring(contact)", "1", "ring of a contact: inner or outer")
+CONTACT_BALL = _rolling("contact_ball(contact)", "1", "number of the ball of a contact")
 INNER_FORCE, OUTER_FORCE = (
-    _rolling(f"{ring}_force(law, ball, time)", "N", f"contact force of a ball and the {ring} ring")
+    Entry(
+        "rolling",
+        f"{ring}_force(law, ball, time)",
+        "N",
+        f"contact force of a ball and the {ring} ring",
+        "of a ball bearing, in memory alone: a view of rolling/contact_force",
+        attributes=(VIEW_OF,),
+    )
     for ring in ("inner", "outer")
 )
+RING_FORCES = {"inner": INNER_FORCE, "outer": OUTER_FORCE}
+"""Parts of the forces of all contacts, by the ring."""
 SPECTRA_SENSOR = _spectra("ring_sensor", "rad", _SENSOR)
 _LEVEL = "level of the acceleration of the outer ring, radially"
 ACCELERATION_LEVEL = _spectra(
@@ -133,3 +148,17 @@ KEPT: dict[Entry, dict[str, int]] = {
 """What a study keeps of it, and where of it; of several sensors, of the first."""
 SHOWN = (BAND_VELOCITY.name, LINE_AMPLITUDE.name, LINES_FOUND.name)
 """What a study shows of it unasked."""
+
+
+def with_ring_forces(tree: "DataTree") -> "DataTree":
+    """Give a result of a bearing the forces on each of its rings, parts of those of all contacts."""
+    motion = tree.children.get(rolling.CONTACT_FORCE.group)
+    if motion is None or CONTACT_RING.name not in motion.variables:
+        return tree
+    rings = motion.variables[CONTACT_RING.name].values.tolist()
+    forces = motion.variables[rolling.CONTACT_FORCE.name].values
+    for ring, entry in RING_FORCES.items():
+        first = rings.index(ring)
+        part = forces[:, first : first + rings.count(ring)]
+        motion[entry.name] = entry.variable(part, **{VIEW_OF: rolling.CONTACT_FORCE.path})
+    return tree

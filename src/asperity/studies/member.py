@@ -86,8 +86,9 @@ def _of_bearing(tree: xarray.DataTree) -> dict[str, Any]:
         found[entry.name] = found[entry.name].rename(judged_band="range")
     load = tree["bearing"].to_dataset()[bearing.BALL_LOAD.name].max(("cage_angle", "ball"))
     motion = tree["rolling"].to_dataset()
-    each = [motion[entry.name].max(("ball", "time")) for entry in (bearing.INNER_FORCE, bearing.OUTER_FORCE)]
-    peak = xarray.concat(each, "ring").assign_coords(ring=load["ring"]).transpose("law", "ring")
+    largest = motion[rolling.CONTACT_FORCE.name].max("time")
+    of_rings = motion[bearing.CONTACT_RING.name].rename("ring")
+    peak = largest.groupby(of_rings).max().sel(ring=load["ring"]).transpose("law", "ring")
     found[VELOCITY_LEVEL] = _velocity_levels(found[bearing.BAND_VELOCITY.name])
     found["largest_load"] = _described(load, "N", LOADS["largest_load"])
     found["peak_force"] = _described(peak, "N", LOADS["peak_force"])

@@ -134,11 +134,16 @@ def _one_turn(tree: DataTree) -> slice:
     return slice(int(np.searchsorted(azimuth, azimuth[-1] - 2.0 * np.pi)), len(azimuth))
 
 
+def _outer(contacts: list[int]) -> int:
+    """Contact of the first ball with the outer ring, which follow those of all balls with the inner one."""
+    return contacts[len(contacts) // 2]
+
+
 @figure(
     "Load of a ball over a turn of the cage",
     Of(bearing.BALL_AZIMUTH, "azimuth"),
-    Of(bearing.INNER_FORCE, "inner force", "on the inner ring"),
-    Of(bearing.OUTER_FORCE, "outer force", "on the outer ring"),
+    Of(rolling.CONTACT_FORCE, "inner force", "on the inner ring"),
+    Of(rolling.CONTACT_FORCE, "outer force", "on the outer ring", one={rolling.CONTACT.name: _outer}),
     rows=_one_turn,
 )
 def ball_turn(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:

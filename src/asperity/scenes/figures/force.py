@@ -134,6 +134,7 @@ def around_peak(tree: DataTree, length: float = AROUND_PEAK) -> slice:
 
 def _forces(tree: DataTree, lines: Lines, **look: Any) -> Iterator[Panel]:
     """Contact force of all laws over a piece of the run, and below it, where there is any, the loss of it."""
+    data.leave_to_bearing(tree)
     axis, unit = panels.time_axis(tree, lines.at)
     size, symbol = data.force_unit(float(np.nanmax(np.abs(data.values(tree, rolling.CONTACT_FORCE)))))
     low, high = (end / size for end in panels.main_limits(lines.lines, data.pulling(tree)))
