@@ -11,6 +11,7 @@ import pytest
 
 import asperity
 from asperity import laws
+from asperity.case.cases import case_classes
 from asperity.scenes.observers import OVER_STRUCTURES
 
 ROOT = Path(__file__).parents[1]
@@ -113,6 +114,32 @@ def test_a_result_names_none_of_its_observers():
                 named = {f"{node.module}.{each.name}" for each in node.names} | {node.module}
                 assert not named & homes, f"{name}: {named & homes}"
     assert len(homes) > 3
+
+
+KINDS = {
+    "Case": ("case/", "fitting/observables/levels", "fitting/observables/stiffness"),
+    "BearingUnderLoad": ("bearing", "studies/signals"),
+    **dict.fromkeys(("PreparedCase", "Computed", "Optimised"), ()),
+    **dict.fromkeys(("PreparedBearing", "ComputedBearing", "OptimisedBearing"), ()),
+}
+"""Classes by which kinds of case could be told apart, and words in the paths of the rooms of their kind."""
+
+
+def test_nothing_beside_a_kind_asks_of_which_kind_a_case_is():
+    """What differs stands in the class of the case, or is named there by module and function."""
+    rooms = {each.__name__: ("case/",) for each in case_classes().values()} | KINDS
+    asked = set()
+    for module in MODULES:
+        place = module.relative_to(SOURCE).as_posix()
+        for node in ast.walk(parsed(module)[1]):
+            called = node.func if isinstance(node, ast.Call) else None
+            if isinstance(called, ast.Name) and called.id in ("isinstance", "issubclass"):
+                words = {ast.unparse(each).rpartition(".")[2] for each in ast.walk(node.args[1])}
+                found = words & set(rooms)
+                beside = [name for name in found if not any(word in place for word in rooms[name])]
+                assert not beside, f"{place}:{node.lineno}: {ast.unparse(node)}"
+                asked |= found
+    assert asked == {"Case", "BearingUnderLoad"}
 
 
 def has_its_own_name(module, name):

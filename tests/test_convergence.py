@@ -13,12 +13,12 @@ import asperity
 from asperity import HeightMap
 from asperity import convergence as converging
 from asperity.case.cases import as_case
-from asperity.convergence import halves, on_the_surface_of
+from asperity.convergence import halves
 from asperity.errors import InputError
 from asperity.reporting.page import sections_of
 from asperity.reporting.tables import changes_table, settings_table
 from asperity.running import prepare_case
-from asperity.scenarios.refining import Way, restricted, settings_for
+from asperity.scenarios.refining import Way, on_the_surface_of, restricted, settings_for
 from asperity.scenes.bearing_refining import settings_of_bearing
 from asperity.scenes.report import CHAPTERS
 from asperity.schema import Entry, convergence

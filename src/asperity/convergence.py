@@ -2,7 +2,8 @@
 
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,10 +15,7 @@ from asperity.case.any_case import AnyCase, ReadyCase, function_named
 from asperity.case.form import case_key, content, file_digest
 from asperity.errors import AsperityError, CaseError, InputError, PhysicsWarning
 from asperity.progress import COMPILED, Progress, counted
-from asperity.scenarios.geometry import window_cells
-from asperity.scenarios.refining import Setting, Way, restricted
-from asperity.scenarios.rim_cells import chosen_cells
-from asperity.scenarios.scene import PreparedCase
+from asperity.scenarios.refining import Setting, Way
 from asperity.scenes import schema as scene
 from asperity.scenes.validity import compared_bands
 from asperity.schema import Entry, Values, bearing, contact, convergence, group, provenance, rolling, spectra
@@ -123,28 +121,16 @@ def _both(
     prepared: ReadyCase, base: xarray.Dataset, setting: Setting, way: Way, progress: Progress
 ) -> tuple[xarray.Dataset, xarray.Dataset]:
     """Levels of the finer and of the coarser computation; `base` are those of the case."""
-    alike = chosen_cells(prepared) if isinstance(prepared, PreparedCase) else {}
-    case = prepared.case.with_(**alike, **way.changes)
+    case = prepared.case.with_(**prepared.chosen, **way.changes)
     changed: ReadyCase = function_named(case.PREPARED_BY)(case, "case")
-    if not setting.laid_anew:
+    if setting.laid_anew is None:
         return _levels(changed.case, "", lambda: changed, progress), base
-    assert isinstance(prepared, PreparedCase)  # whose textures lie on a grid
-    assert isinstance(changed, PreparedCase)
     small, large = (changed, prepared) if way.coarser else (prepared, changed)
     textures_of = json.dumps(content(large.case, file_digest), sort_keys=True)
-    twin = _levels(small.case, textures_of, lambda: on_the_surface_of(small, large), progress)
+    twin = _levels(small.case, textures_of, partial(setting.laid_anew, small, large), progress)
     if way.coarser:
         return base, twin
     return _levels(changed.case, "", lambda: changed, progress), twin
-
-
-def on_the_surface_of(small: PreparedCase, large: PreparedCase) -> PreparedCase:
-    """A case on the textures of a finer or wider one, restricted to its own grid and window."""
-    spacing = large.case.contact.spacing
-    every = round(small.case.contact.spacing / spacing)
-    lines = window_cells(small.case.contact)
-    points = restricted(large.textures.points or large.textures, spacing, every, lines)
-    return replace(small, textures=points.over_cells() if small.shape.cells == "covered" else points)
 
 
 def _levels(

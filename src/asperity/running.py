@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import warnings
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from asperity.arguments import shown
 from asperity.errors import ComputationError, InputError
@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from asperity.case.any_case import AnyCase, ReadyCase
     from asperity.progress import Progress
     from asperity.scenes.report import Result
+
+C = TypeVar("C", bound="AnyCase")
 
 
 def run(
@@ -136,3 +138,8 @@ def prepare_case(case: AnyCase, source: str = "case") -> ReadyCase:
 
     prepared: ReadyCase = function_named(case.PREPARED_BY)(case, source)
     return prepared
+
+
+def with_choices_fixed(case: C) -> C:
+    """A case that is searched about: what is chosen for it as it is prepared stays, whatever is tried."""
+    return case.with_(**prepare_case(case).chosen) if len(case.cells_at_rims) > 1 else case

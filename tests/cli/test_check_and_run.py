@@ -12,11 +12,12 @@ import numpy as np
 import pytest
 
 from asperity.case.cases import parse_case, read_case
-from asperity.cli.running import earlier_result, name_of_run, plan
+from asperity.cli.running import earlier_result, name_of_run
 from asperity.results import read_result
 from asperity.running import prepare_case
 from asperity.scenarios.preparing import expect
 from asperity.scenarios.run_time import RunTime
+from asperity.scenes.planning import plan
 from asperity.store import Store
 from command_line import CASE, RAIL, SMALL, call, words_of
 

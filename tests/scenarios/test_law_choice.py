@@ -11,7 +11,6 @@ import pytest
 
 from asperity import HeightMap, Profile, WheelOnRail
 from asperity.case.cases import as_case
-from asperity.cli.running import plan
 from asperity.reference.law_accuracy import Place, law_map, mapped_points
 from asperity.running import prepare_case
 from asperity.scenarios import law_choice
@@ -19,6 +18,7 @@ from asperity.scenarios.geometry import geometry_of
 from asperity.scenarios.law_choice import ExpectedError, LawChoice, choose, expected_error, place_of
 from asperity.scenarios.preparing import Work
 from asperity.scenarios.scene import scene_of
+from asperity.scenes.planning import plan
 from asperity.scenes.validity import doubted_by_area
 
 ROOT = Path(__file__).parents[2]

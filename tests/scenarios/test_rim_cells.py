@@ -9,8 +9,6 @@ import numpy as np
 import pytest
 import xarray
 
-from asperity.cli.running import plan
-from asperity.convergence import on_the_surface_of
 from asperity.errors import Grade, InputError
 from asperity.fitting import running as fitting
 from asperity.optimising import running as optimising
@@ -20,8 +18,9 @@ from asperity.scenarios import problems, reducing, rim_cells
 from asperity.scenarios.laws import ReducedCase, reduced_case
 from asperity.scenarios.preparing import Work, with_cells_fixed
 from asperity.scenarios.reducing import samples_of
-from asperity.scenarios.refining import settings_for
+from asperity.scenarios.refining import on_the_surface_of, settings_for
 from asperity.scenarios.textures import textures_under
+from asperity.scenes.planning import plan
 from asperity.scenes.validity import _whole_cells
 from asperity.studies.table import _of_cells
 from asperity.surfaces.cell_means import MeansOverCells, cell_means
@@ -161,7 +160,7 @@ def test_what_was_chosen_is_told_before_the_run():
 def test_a_grid_is_compared_on_means_over_its_own_cells():
     small = chosen(0.02)
     finer = settings_for(small, np.linspace(-1e-6, 3e-6, 5))[0].ways[0].changes
-    large = prepare_case(small.case.with_(**rim_cells.chosen_cells(small), **finer))
+    large = prepare_case(small.case.with_(**small.chosen, **finer))
     assert large.case.contact.rim_cells == large.shape.cells == "covered"
     found = whole(on_the_surface_of(small, large).textures.path)
     points = whole(large.textures.points.path)

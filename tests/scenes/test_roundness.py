@@ -7,10 +7,10 @@ import pytest
 
 from asperity import Profile
 from asperity.case.bodies import WheelOnRail
-from asperity.cli.running import plan
 from asperity.running import prepare_case
 from asperity.scenarios.preparing import Work
 from asperity.scenes.figures.track import out_of_round
+from asperity.scenes.planning import plan
 from small_cases import HEARD
 
 AROUND = 2.0 * math.pi * 0.46

@@ -235,6 +235,10 @@ class AnyCase(Section):
     """Function (case, source) that makes a `ReadyCase` of it, by module and name."""
     COMPUTED_BY: ClassVar[str]
     """Function (ready case, progress, warnings caught, brief=…) that makes its result."""
+    PLANNED_BY: ClassVar[str]
+    """Function (ready case, progress) that says what will be computed, a `scenarios.preparing.Plan`."""
+    SCANNED_BY: ClassVar[str] = ""
+    """Function (ready case) that sizes its scans, by what for; empty of a kind without long ones."""
     REFINED_BY: ClassVar[str]
     """Function (ready case, its result) that lists the settings by which it is made finer."""
     PRESSED_BY: ClassVar[str]
@@ -294,6 +298,16 @@ class AnyCase(Section):
     def highest_frequency(self) -> float:
         """Highest frequency that its spectra hold, Hz."""
         raise NotImplementedError
+
+    @property
+    def cells_at_rims(self) -> tuple[str, ...]:
+        """How cells at the rims of its contacts may count: several where that is chosen as it is prepared."""
+        return ("whole",)
+
+    @classmethod
+    def shared_keys(cls, cases: "Sequence[Self]") -> dict[str, float]:
+        """Keys that were chosen otherwise for some of several cases than for others, fit for all of them."""
+        return {}
 
     @property
     def helping_changes(self) -> NamedChanges:
@@ -447,6 +461,11 @@ class ReadyCase(Protocol):
     @property
     def caught(self) -> tuple[warnings.WarningMessage, ...]:
         """Warnings met on the way."""
+        ...
+
+    @property
+    def chosen(self) -> Mapping[str, str]:
+        """Keys that were chosen for it as it was prepared, which fix them for others compared with it."""
         ...
 
 

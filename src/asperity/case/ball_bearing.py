@@ -311,6 +311,7 @@ class BearingUnderLoad(AnyCase):
     NEEDED = "a bearing and its load"
     PREPARED_BY = "asperity.scenarios.prepared_bearing.prepare_bearing"
     COMPUTED_BY = "asperity.scenes.bearing.bearing_result"
+    PLANNED_BY = "asperity.scenarios.prepared_bearing.planned_bearing"
     REFINED_BY = "asperity.scenes.bearing_refining.settings_of_bearing"
     PRESSED_BY = "asperity.serving.contact_preview.raceway_surface"
     OPTIMISED_BY = "asperity.optimising.bearing.OF_BEARINGS"

@@ -1,14 +1,14 @@
 """The case of any scene: what rolls over what, by which laws, for how long; and what must fit together."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from asperity.case.any_case import LAW, AnyCase
 from asperity.case.body import Rolling
-from asperity.case.chosen_lengths import chosen_lengths
+from asperity.case.chosen_lengths import chosen_lengths, shared_lengths
 from asperity.case.creep import MOST_CREEPAGE, CreepKeys
 from asperity.case.form import section
 from asperity.case.ready_lists import NamedChanges
@@ -60,6 +60,8 @@ class Case(AnyCase):
 
     PREPARED_BY = "asperity.scenarios.preparing.prepare"
     COMPUTED_BY = "asperity.scenes.result.computed_result"
+    PLANNED_BY = "asperity.scenes.planning.planned_scene"
+    SCANNED_BY = "asperity.scenarios.preparing.scan_sizes"
     REFINED_BY = "asperity.scenarios.refining.settings_of_scene"
     PRESSED_BY = "asperity.serving.contact_preview.scene_surface"
     OPTIMISED_BY = "asperity.optimising.running.OF_BODIES"
@@ -356,6 +358,17 @@ class Case(AnyCase):
         allowed = _allowed(line=True, samples=self.surface.has_samples)
         smooth = () if self.surface.has_samples else (SMOOTH,)
         return (*smooth, *(law for law in usual if law in allowed))
+
+    @property
+    def cells_at_rims(self) -> tuple[str, ...]:
+        """How cells at the rims of its contacts may count: both ways where that is chosen by its texture."""
+        asked = self.contact.rim_cells
+        return ("whole", "covered") if asked == "auto" else (asked,)
+
+    @classmethod
+    def shared_keys(cls, cases: Sequence[Self]) -> dict[str, float]:
+        """Lengths that were chosen otherwise for some of several cases than for others, fit for all."""
+        return shared_lengths(cases)
 
     def problems(self) -> Iterator[InputError]:
         """What must fit together across the sections: bodies that touch in a point first."""

@@ -3,16 +3,15 @@
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
 from asperity.arguments import Array, real, require, whole
-from asperity.case.cases import read_case
+from asperity.case.cases import of_bodies, read_case
 from asperity.cli.running import prepared_case
 from asperity.contact.creep import CreepCurve, creep_curve
 from asperity.contact.friction import Friction
-from asperity.errors import InputError
 from asperity.progress import progress_bar
 from asperity.reduction.traction import TractionStates
 from asperity.reporting.chart import (
@@ -61,10 +60,8 @@ def show_creep(
     allowed = f"a whole number from 2 to {MOST_POINTS}"
     count = (6 if states else 16) if points is None else points
     whole("--points", count, allowed, at_least=2, at_most=MOST_POINTS)
-    case = read_case(source)
-    prepared = prepared_case(case, str(source))
-    if not isinstance(prepared, PreparedCase):
-        raise InputError("case", f"one of kind {case.kind}", "a kind whose bodies roll over a surface")
+    case = of_bodies(read_case(source), "creep")
+    prepared = cast(PreparedCase, prepared_case(case, str(source)))
     with progress_bar() as progress:
         if states:
             found = _told_states(creep.states_of(prepared, count, progress), str(source))

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from asperity.cli.optimising import FILES, ToldOptimisation
 from asperity.optimising.bearing import JUDGED, OptimisedBearing
 from asperity.reporting import chart, page, panels
 from asperity.reporting.chart import Axis, Line, Panel
@@ -27,7 +28,12 @@ HEADS = (
 )
 
 
-def rows_of_bearing(found: OptimisedBearing) -> list[list[Any]]:
+def told_bearing(found: OptimisedBearing, *, report: bool) -> ToldOptimisation:
+    """What is said of waves that were found; `report` says whether the runs have pages."""
+    return ToldOptimisation(_document(found), _rows(found), _page(found, report=report))
+
+
+def _rows(found: OptimisedBearing) -> list[list[Any]]:
     """A row of the table for each band that was changed; roughness has no waves per turn."""
     rows = list[list[Any]]()
     for band, change, alone in zip(found.bands, found.changes.tolist(), found.alone.tolist(), strict=True):
@@ -39,7 +45,7 @@ def rows_of_bearing(found: OptimisedBearing) -> list[list[Any]]:
     return rows
 
 
-def document_of_bearing(found: OptimisedBearing) -> dict[str, Any]:
+def _document(found: OptimisedBearing) -> dict[str, Any]:
     """What came of it, for programs."""
 
     def heard(*, after: bool) -> dict[str, list[float]]:
@@ -57,15 +63,14 @@ def document_of_bearing(found: OptimisedBearing) -> dict[str, Any]:
     }
 
 
-def page_of_bearing(found: OptimisedBearing, file: str, links: dict[str, str], *, report: bool) -> str:
+def _page(found: OptimisedBearing, *, report: bool) -> str:
     """The page: velocities before and after, and the waves of each part."""
     figure = PageFigure.of("bands", "Waves of the parts", _waves(found))
+    links = {"bands (CSV)": FILES["table"], "case": FILES["case"]}
     if report:
-        links = links | {f"report {what}": f"{what}/{REPORT}" for what in ("before", "after")}
+        links |= {f"report {what}": f"{what}/{REPORT}" for what in ("before", "after")}
     blocks: list[page.Block] = [_velocities(found), figure, _bands(found)]
-    return page.figures_page(
-        "Optimised bearing", capital(found.sentence), blocks, {"bands (CSV)": file} | links
-    )
+    return page.figures_page("Optimised bearing", capital(found.sentence), blocks, links)
 
 
 def _velocities(found: OptimisedBearing) -> ReportTable:

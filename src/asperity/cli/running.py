@@ -15,23 +15,20 @@ import numpy as np
 import asperity
 from asperity import files
 from asperity.arguments import no_file
-from asperity.case.any_case import AnyCase, ReadyCase
+from asperity.case.any_case import AnyCase, ReadyCase, function_named
 from asperity.case.form import case_key, file_digest
 from asperity.cli.commands import taken_folder
-from asperity.errors import Finding, Grade, InputError, PhysicsWarning
+from asperity.errors import Grade, InputError, PhysicsWarning
 from asperity.progress import COMPILATION, duration, progress_bar
 from asperity.schema import bearing, provenance, rolling
 from asperity.store import Store, content_key
 from asperity.terminal import detail, remark, say, say_files, say_table
 from asperity.threads import THREADS, processors
-from asperity.written_numbers import between, count_of, rounded
 
 if TYPE_CHECKING:
     from xarray import DataArray, DataTree
 
-    from asperity.scenarios.law_choice import LawChoice
-    from asperity.scenarios.preparing import ScanSize, Work
-    from asperity.scenarios.scene import PreparedCase
+    from asperity.scenarios.preparing import Plan
 
 RESULT, PAGE = "run.nc", "report.html"
 CONVERGENCE, EFFECTS = "convergence", "effects"
@@ -184,25 +181,12 @@ def _write(tree: DataTree, directory: Path, *, report: bool) -> None:
 # --- what is said of a run
 
 
-def described_scan(scan: ScanSize) -> str:
-    """Describe the scan of a path in a sentence: its size, disk use, and what an interruption costs."""
-    root = Store().root
-    size = f"{scan.bytes / 2**20:.1f} MiB"
-    return (
-        f"{scan.positions} positions × {scan.states} approaches, "
-        f"about {scan.solutions} solutions, more where the motion goes farther, {size} in {root}; "
-        "if interrupted or killed, it goes on after its last finished block"
-    )
-
-
 def announce_scan(prepared: ReadyCase) -> None:
     """Before a long scan of a path starts, say how long it is."""
-    from asperity.scenarios.preparing import scan_sizes
-    from asperity.scenarios.scene import PreparedCase
+    from asperity.scenes.planning import described_scan
 
-    if not isinstance(prepared, PreparedCase):
-        return
-    scan = scan_sizes(prepared).get("path")
+    scans_of = prepared.case.SCANNED_BY
+    scan = function_named(scans_of)(prepared).get("path") if scans_of else None
     if scan is not None and scan.solutions >= ANNOUNCED:
         say(f"Scan of the path: {described_scan(scan)}.", err=True)
 
@@ -363,30 +347,14 @@ def _show_keys(case: AnyCase, *, every_key: bool) -> None:
 
 def planned(prepared: ReadyCase) -> dict[str, Any]:
     """What will be computed from a case: rows, seconds and warnings."""
-    from asperity.scenarios.law_choice import law_choice
-    from asperity.scenarios.preparing import expect
-    from asperity.scenarios.scene import PreparedCase
-    from asperity.scenes.validity import foreseen
-
-    met = list(prepared.caught)
-    faults: list[Finding] = []
-    if isinstance(prepared, PreparedCase):
-        with progress_bar() as progress, PhysicsWarning.caught() as planning:
-            work = expect(prepared, progress)
-            choice = law_choice(prepared)
-            rows = plan(prepared, work, choice)
-            faults = [] if work.tried is None else foreseen(prepared, work.tried, choice)
-        met += planning
-    else:
-        from asperity.scenarios.prepared_bearing import PreparedBearing, expected
-
-        assert isinstance(prepared, PreparedBearing)
-        rows, work = expected(prepared)
-        rows.append(_work(work))
+    with progress_bar() as progress, PhysicsWarning.caught() as planning:
+        found: Plan = function_named(prepared.case.PLANNED_BY)(prepared, progress)
+    met = [*prepared.caught, *planning]
+    work = found.work
     caught = [(getattr(each.message, "grade", Grade.WARNING), str(each.message)) for each in met]
-    caught += [(each.grade, each.message) for each in faults if each.grade]
+    caught += [(each.grade, each.message) for each in found.findings if each.grade]
     return {
-        "plan": [{"name": name, "value": value} for name, value in rows],
+        "plan": [{"name": name, "value": value} for name, value in found.rows],
         "work": {
             "seconds": work.seconds,
             "processor_seconds": work.time.processor,
@@ -397,48 +365,3 @@ def planned(prepared: ReadyCase) -> dict[str, Any]:
         },
         "warnings": [{"grade": grade.value, "message": message} for grade, message in caught],
     }
-
-
-def plan(prepared: PreparedCase, work: Work, choice: LawChoice | None = None) -> list[tuple[str, str]]:
-    """List what will be computed and how much work it is, from `asperity.scenarios.preparing.expect`."""
-    from asperity.scenarios.coverage import coverages
-    from asperity.scenarios.law_choice import advised_law
-    from asperity.scenarios.reducing import STATES
-    from asperity.scenes.roundness import planned_roundness
-    from asperity.scenes.track import planned_track
-
-    case, (nx, ny) = prepared.case, prepared.shape.body.shape
-    contact, settling = case.contact, case.settled_time
-    states = STATES if contact.approaches is None else len(contact.approaches)
-    first, last = case.rolled_range
-    points = round((last - first) / contact.spacing) + 1
-    offsets = prepared.scene.offsets
-    places = f"{between(rounded(min(offsets)), rounded(max(offsets)))} m ahead of the position"
-    run_in = f", and {settling:g} s before it" if settling else ""
-    rows = [
-        ("textures", prepared.textures.origin),
-        *((f"bands of {each.key}", each.at(case.speed)) for each in coverages(case, prepared.textures)),
-        ("path", f"{last - first:g} m from {first:g} m, {points} points {contact.spacing * 1e6:g} µm apart"),
-        (
-            "time",
-            f"{case.rolled_time:g} s{run_in}, {work.steps} steps of {rounded(case.time_step * 1e6, 4)} µs",
-        ),
-        *([("contacts", f"{len(offsets)}, {places}")] if len(offsets) > 1 else []),
-        *planned_track(prepared),
-        ("laws", ", ".join(case.laws)),
-        ("contact", f"{nx} × {ny} cells, {count_of(contact.samples, 'sample')}, {states} approaches"),
-    ]
-    if prepared.rims:
-        rows.append(("cells at rims", f"{prepared.shape.cells}: {prepared.rims}"))
-    if work.tried is not None:  # a sample
-        share = f"about {100 * work.tried.pressed.area_ratio:.0f} % of the area of smooth bodies"
-        rows.append(("real contact", share))
-    rows += [*planned_roundness(prepared), *advised_law(prepared, choice)]
-    rows += [(f"contact solutions, {name}", f"at most {count}") for name, count in work.solutions.items()]
-    if scan := work.scans.get("path"):
-        rows.append(("scan of the path", described_scan(scan)))
-    return [*rows, _work(work)]
-
-
-def _work(work: Work) -> tuple[str, str]:
-    return "work", work.told

@@ -12,7 +12,6 @@ from asperity.arguments import Array, NDArray, file_path, require, shown, whole
 from asperity.case import cases
 from asperity.case.any_case import AnyCase, entry_of
 from asperity.case.form import case_key
-from asperity.case.scene import Case
 from asperity.errors import BandsWarning, InputError
 from asperity.fitting import determined
 from asperity.fitting.fitted import Estimate, Fitted, Undetermined
@@ -39,7 +38,7 @@ from asperity.fitting.search import (
 from asperity.observables import observable, reading
 from asperity.observables.observable import Measured, Values
 from asperity.progress import Progress, shown_progress
-from asperity.scenarios.preparing import with_cells_fixed
+from asperity.running import with_choices_fixed
 from asperity.store import Store, made
 from asperity.threads import one_thread_in_linear_algebra
 from asperity.written_numbers import count_of, rounded
@@ -216,8 +215,7 @@ def fitted(
     starts: int | None = None,
 ) -> Fitted:
     """Fit a case to measurements by what may change, as `fit` does."""
-    if isinstance(case, Case):
-        case = with_cells_fixed(case)
+    case = with_choices_fixed(case)
     known, before = _known(case, measured, progress)
     problem = Problem(case, known, chosen, of_case=case_key("fit", FORMAT, case), progress=progress)
     received = f"{count_of(len(chosen), 'free key')} and {count_of(problem.count, 'value')}"

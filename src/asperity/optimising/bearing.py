@@ -420,4 +420,4 @@ def _velocities(case: BearingUnderLoad, acceleration: Array) -> Array:
     return np.sqrt(np.mean(np.square(judged), axis=0))
 
 
-OF_BEARINGS = Optimisation(BearingAim, optimised_bearing)
+OF_BEARINGS = Optimisation(BearingAim, optimised_bearing, "asperity.cli.optimising_bearing.told_bearing")

@@ -10,10 +10,11 @@ from asperity.progress import Progress
 
 
 class Optimisation(NamedTuple):
-    """What may be asked of the texture of a kind of case, and the function that finds it."""
+    """What may be asked of the texture of a kind of case, what finds it, and what tells of it."""
 
     aim: type[Section]
     find: Callable[..., Any]  # of the case, the aim and progress
+    told_by: str  # function (what was found, report=…), by module and name: its tables and its page
 
 
 def optimisation_of(case: AnyCase) -> Optimisation:

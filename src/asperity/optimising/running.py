@@ -25,8 +25,8 @@ from asperity.optimising.definition import (
 from asperity.optimising.kinds import Optimisation, optimisation_of, searched
 from asperity.progress import Progress, shown_progress
 from asperity.reporting.data import written_units
-from asperity.running import run
-from asperity.scenarios.preparing import prepare, with_cells_fixed
+from asperity.running import run, with_choices_fixed
+from asperity.scenarios.preparing import prepare
 from asperity.scenes import result
 from asperity.spectra import band_energies, level_of
 from asperity.store import Store, made
@@ -220,7 +220,7 @@ def optimised(case: scene.Case, aim: Aim, progress: Progress) -> Optimised:
     before = bands_of(case, aim.longest, aim.shortest)
     if aim.lateral is not None and before.lateral is None:
         raise InputError("lateral", "bounds for a line, which has no lay", "a surface", "Remove the key.")
-    case = with_cells_fixed(case)
+    case = with_choices_fixed(case)
     limits = aim.limits(before.levels[before.changed])
     numbers = itertools.count(1)
 
@@ -258,4 +258,4 @@ def _rolled(base: scene.Case, aim: Aim, measure: Measure, bands: Bands, progress
     return Trial(bands.levels[bands.changed], bands.lateral, energies, max(whole - energies.sum(), 0.0))
 
 
-OF_BODIES = Optimisation(Aim, optimised)
+OF_BODIES = Optimisation(Aim, optimised, "asperity.cli.optimising_texture.told_texture")

@@ -55,6 +55,11 @@ class PreparedBearing:
     balls: tuple[Raceway, ...]  # their surfaces; none where all are smooth
     caught: tuple[warnings.WarningMessage, ...]  # warnings met on the way
 
+    @property
+    def chosen(self) -> dict[str, str]:
+        """Keys that were chosen for it: none."""
+        return {}
+
 
 def bearing_parts(case: BearingUnderLoad) -> list[tuple[str, Any, float]]:
     """Names of inner and outer raceway and of balls, their sections, and their radii, m."""
@@ -124,6 +129,12 @@ def raceways_of(prepared: PreparedBearing, progress: Progress | None) -> list[On
         )
         for (smooth, load), surface, radius, pace in each
     ]  # fmt: skip
+
+
+def planned_bearing(prepared: PreparedBearing, progress: Progress) -> preparing.Plan:
+    """Plan a bearing: nothing is solved for that."""
+    rows, work = expected(prepared)
+    return preparing.Plan([*rows, ("work", work.told)], work)
 
 
 def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], preparing.Work]:

@@ -5,7 +5,7 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from asperity.case.chosen_lengths import with_chosen
 from asperity.case.scene import Case
 from asperity.contact.batched import find_device
 from asperity.contact.scan import BLOCK_BYTES, FILTER_SHARE, ScanJob, rtol_for, scan_forces
-from asperity.errors import InputError, PhysicsWarning
+from asperity.errors import Finding, InputError, PhysicsWarning
 from asperity.files import amount, free_space
 from asperity.laws import Need, needs_of, spec_of
 from asperity.progress import Progress, duration
@@ -33,7 +33,7 @@ from asperity.scenarios.coverage import problems_of_coverage
 from asperity.scenarios.doubts import doubt_sizes
 from asperity.scenarios.geometry import geometry_of, window_cells
 from asperity.scenarios.problems import by_key, problems, refuse
-from asperity.scenarios.rim_cells import chosen_cells, with_rims
+from asperity.scenarios.rim_cells import with_rims
 from asperity.scenarios.scanned_positions import table_stride
 from asperity.scenarios.scanned_states import states_expected
 from asperity.scenarios.scene import PreparedCase, scene_of
@@ -73,11 +73,6 @@ def prepare(case: Case, source: str = "case") -> PreparedCase:
     seconds = {"textures": time.perf_counter() - begin}
     processor = time.process_time() - spent
     return replace(prepared, caught=tuple(caught), seconds=seconds, processor=processor)
-
-
-def with_cells_fixed(case: Case) -> Case:
-    """A case that is searched about: cells at rims are those of its own texture, whatever is tried."""
-    return case.with_(**chosen_cells(prepare(case))) if case.contact.rim_cells == "auto" else case
 
 
 def _within_the_map(case: Case, textures: Textures) -> Case | None:
@@ -293,6 +288,14 @@ class Work:
         if self.compiling:
             said += f"; before that functions are compiled, about {_coarsely(self.compiling)}, the first time"
         return said
+
+
+class Plan(NamedTuple):
+    """What will be computed of a case of any kind."""
+
+    rows: list[tuple[str, str]]  # names and values, in words
+    work: Work
+    findings: Sequence[Finding] = ()  # what is doubtful of it
 
 
 def _coarsely(seconds: float) -> str:

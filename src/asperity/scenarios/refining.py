@@ -1,6 +1,6 @@
 """A case made finer setting by setting, on the same surface: a finer or wider texture thinned or cut."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -138,8 +138,18 @@ class Setting:
     name: str
     ways: tuple[Way, ...]  # the first that the case allows is taken
     limit: str = ""  # why there is no way
-    # whether textures are laid out anew: the surface of the finer case is then restricted for the coarser one
-    laid_anew: bool = False
+    # function (coarser, finer ready case) that makes the coarser one roll over the surface of the finer one;
+    # None where textures are not laid out anew
+    laid_anew: Callable[[Any, Any], Any] | None = None
+
+
+def on_the_surface_of(small: PreparedCase, large: PreparedCase) -> PreparedCase:
+    """A case on the textures of a finer or wider one, restricted to its own grid and window."""
+    spacing = large.case.contact.spacing
+    every = round(small.case.contact.spacing / spacing)
+    lines = window_cells(small.case.contact)
+    points = restricted(large.textures.points or large.textures, spacing, every, lines)
+    return replace(small, textures=points.over_cells() if small.shape.cells == "covered" else points)
 
 
 def settings_of_scene(prepared: PreparedCase, result: DataTree) -> list[Setting]:
@@ -179,13 +189,15 @@ def settings_for(prepared: PreparedCase, approaches: Array) -> list[Setting]:
     steps = f"{rounded(1e6 * step, 4)} µs → {rounded(5e5 * step, 4)} µs"
     shorter = Way(steps, {"numerics.time_step": 0.5 * step})
     reduced = [
-        Setting("window", windows, laid_anew=True),
+        Setting("window", windows, laid_anew=on_the_surface_of),
         Setting("samples", (more,)),
         Setting("approaches", (denser,)),
     ]
     if not textures.maps:
         reduced = [Setting(each.name, (), NO_SAMPLES) for each in reduced]
-    grid = Setting("grid", (Way(f"{_length(spacing)} → {_length(fine)}", finer),), laid_anew=True)
+    grid = Setting(
+        "grid", (Way(f"{_length(spacing)} → {_length(fine)}", finer),), laid_anew=on_the_surface_of
+    )
     half_path = Way(f"{rounded(case.rolled_time)} s → its first half")
     return [
         grid,

@@ -42,12 +42,6 @@ def with_rims(prepared: PreparedCase) -> PreparedCase:
     )
 
 
-def chosen_cells(prepared: PreparedCase) -> dict[str, str]:
-    """Key that fixes cells at rims as they were chosen for a case, for others that are compared with it."""
-    chosen = prepared.case.contact.rim_cells == "auto"
-    return {"contact.rim_cells": prepared.shape.cells} if chosen else {}
-
-
 def _chosen(prepared: PreparedCase) -> tuple[str, str]:
     """Kind of cells that suits a case, and why."""
     case, shape, maps = prepared.case, prepared.shape, prepared.textures.maps

@@ -142,6 +142,12 @@ class PreparedCase:
     seconds: dict[str, float] = field(default_factory=dict)  # wall time of each part, s
     processor: float = 0.0  # time that preparing took, s
 
+    @property
+    def chosen(self) -> dict[str, str]:
+        """Keys that were chosen for it: cells at rims, where the case leaves them open."""
+        left_open = self.case.contact.rim_cells == "auto"
+        return {"contact.rim_cells": self.shape.cells} if left_open else {}
+
 
 # --- the linear reference in the frequency domain: roughness moved between a wheel and a rail at rest
 #

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from asperity.arguments import require, shown
-from asperity.case import cases, chosen_lengths, form, scene, toml
+from asperity.case import cases, form, toml
 from asperity.case.any_case import AnyCase, entry_of
 from asperity.case.form import case_key, content, file_digest
 from asperity.errors import CaseError, InputError
@@ -147,9 +147,8 @@ class Study:
         """
         digest_of = lru_cache(maxsize=None)(file_digest)
         found = [self._member(index, digest_of, {}) for index in np.ndindex(self.shape)]
-        if shared := chosen_lengths.shared_lengths(
-            [member.case for member in found if isinstance(member.case, scene.Case)]
-        ):
+        valid = [member.case for member in found if member.case is not None]
+        if valid and (shared := valid[0].shared_keys(valid)):
             found = [self._member(member.index, digest_of, shared) for member in found]
         errors = [member.error for member in found if member.error is not None]
         if len(errors) == len(found):

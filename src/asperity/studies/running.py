@@ -209,7 +209,6 @@ def study(
     plan = _planned(definition, sweep)
     if workers is not None:
         workers = whole("workers", workers, "a whole number greater than 0, or None", at_least=1)
-    from asperity.case.scene import Case
     from asperity.scenarios.compiling import compile_kernels
     from asperity.studies.table import tabulated
 
@@ -226,8 +225,7 @@ def study(
         if not all(map(comes_with_the_program, laws)):
             return _in_this_process(waiting)
         if waiting and (case := waiting[0].case) is not None:  # once here, and not in every process
-            cells = case.contact.rim_cells if isinstance(case, Case) else "whole"
-            compile_kernels(told, *(("whole", "covered") if cells == "auto" else (cells,)))
+            compile_kernels(told, *case.cells_at_rims)
         return locally(waiting, workers)
 
     with shown_progress(progress) as told:

@@ -1,0 +1,90 @@
+"""A texture of bodies that roll that was found: its bands as a table and on a page, its levels as a file."""
+
+from typing import Any
+
+import numpy as np
+
+from asperity.arguments import Array
+from asperity.cli.optimising import FILES, ToldOptimisation
+from asperity.laws import spec_of
+from asperity.optimising.running import Optimised
+from asperity.reporting import data, page, study_figures
+from asperity.reporting.figure import PageFigure
+from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
+from asperity.scenes.report import PAGE as REPORT
+from asperity.written_numbers import capital
+
+TEXTURE = "wavelength (m)", "level (dB re 1 um)"
+"""Heading of the file of levels."""
+
+
+def told_texture(found: Optimised, *, report: bool) -> ToldOptimisation:
+    """What is said of a texture that was found; `report` says whether the runs have pages."""
+    columns = _columns(found)
+    rows = np.stack(list(columns.values()), axis=1).tolist()
+    texture = np.stack([found.after.wavelength, found.after.levels], axis=1).tolist()
+    shown = _page(found, columns, report=report)
+    return ToldOptimisation(_document(found), rows, shown, {"texture": (TEXTURE, texture)})
+
+
+def _document(found: Optimised) -> dict[str, Any]:
+    """What came of it, for programs."""
+    return {
+        "quantity": found.measure.meaning,
+        "units": found.measure.units,
+        "changes": found.changes,
+        "levels": {law: list(levels) for law, levels in found.levels.items()},
+        "limit": found.aim.limit,
+        "limits": found.active,
+        "columns": list(_columns(found)),
+    }
+
+
+def _columns(found: Optimised) -> dict[str, Array]:
+    """Numbers of the bands that were changed, by the titles of their columns."""
+    changed, units = found.after.changed, found.measure.units
+    columns = {
+        "wavelength [m]": found.after.changed_wavelength,
+        "frequency [Hz]": np.sqrt(np.prod(found.after.edges(found.case.speed), axis=0)),
+        "level before [dB re 1 um]": found.before.levels[changed],
+        "level after [dB re 1 um]": found.after.levels[changed],
+        "lowest [dB re 1 um]": found.limits.lowest,
+        "highest [dB re 1 um]": found.limits.highest,
+    }
+    for law in found.changes:
+        for name, tree in (("before", found.result_before), ("after", found.result_after)):
+            columns[f"{law} {name} [{units}]"] = found.band_levels(tree, law)
+    return columns
+
+
+def _page(found: Optimised, columns: dict[str, Array], *, report: bool) -> str:
+    laws = data.read_entries(spec_of(law).entry() for law in found.changes)
+    colours = {name: law.colour for name, law in laws.items()}
+    parts = study_figures.optimised_figure(columns, found.measure.meaning, found.measure.units, colours)
+    figure = PageFigure.of("bands", "Texture and response in bands", parts, FILES["table"], columns)
+    offered = {"texture (CSV)": "texture", "case": "case"}
+    links = {words: FILES[what] for words, what in offered.items()}
+    if report:
+        links |= {f"report {what}": f"{what}/{REPORT}" for what in ("before", "after")}
+    return page.figures_page(
+        "Optimised texture", capital(found.sentence), [_levels_table(found), figure], links
+    )
+
+
+def _levels_table(found: Optimised) -> ReportTable:
+    """Level of the quantity before and after, by law, and the limit that was asked for."""
+    before, after = zip(*found.levels.values(), strict=True)
+    columns = {
+        "law": text_cells(found.levels, "name"),
+        "before": number_cells(before, "{:.1f}"),
+        "after": number_cells(after, "{:.1f}"),
+        "change / dB": number_cells(found.changes.values(), data.signed),
+    }
+    limit = found.aim.limit
+    if limit is not None:
+        columns["limit"] = number_cells([limit] * len(before), "{:.1f}")
+        columns["after less limit / dB"] = number_cells([each - limit for each in after], data.signed)
+    note = (
+        f"In {data.written_units(found.measure.units)}: all waves of the texture, and what other bodies add."
+    )
+    return table("levels", capital(found.measure.meaning), columns, note)
