@@ -13,10 +13,10 @@ from asperity.errors import Grade, InputError
 from asperity.fitting import running as fitting
 from asperity.optimising import running as optimising
 from asperity.optimising.definition import Aim
-from asperity.running import prepare_case
+from asperity.running import prepare_case, with_choices_fixed
 from asperity.scenarios import problems, reducing, rim_cells
 from asperity.scenarios.laws import ReducedCase, reduced_case
-from asperity.scenarios.preparing import Work, with_cells_fixed
+from asperity.scenarios.preparing import Work
 from asperity.scenarios.reducing import samples_of
 from asperity.scenarios.refining import on_the_surface_of, settings_for
 from asperity.scenarios.textures import textures_under
@@ -188,7 +188,7 @@ def test_a_search_keeps_the_cells_of_the_case_that_it_began_with(monkeypatch):
         fitting.fitted(case, (), (), lambda *_: None)
     assert begun == ["covered", "covered"]
     given = prepared(cells="whole").case
-    assert with_cells_fixed(given) is given
+    assert with_choices_fixed(given) is given
 
 
 def test_a_study_tells_that_its_members_have_unlike_cells():
