@@ -1,5 +1,6 @@
 """``asperity bearing``: what it prints of a bearing and its signal, and refuses; and a bearing that runs."""
 
+import csv
 import importlib
 import json
 import re
@@ -319,6 +320,34 @@ SMALL = {
     },
     "inner_raceway": {"waves": [4], "amplitudes": ["20 nm"]},
 }  # fmt: skip
+
+
+def test_a_creep_curve_of_a_bearing_is_refused_with_the_kinds_that_have_one():
+    Path("bearing.toml").write_text(as_case(SMALL).to_toml())
+    told = words_of(call("creep", "bearing.toml", code=2).stderr)
+    assert "creep: received a ball-bearing case, for which it is not available; allowed: a kind" in told
+    assert "wheel-on-rail" in told
+
+
+@pytest.mark.usefixtures("members_in_this_process")
+def test_a_study_by_command_says_what_helps_a_bearing(monkeypatch):
+    """By a linear law twice the waves are 6 dB more, half of them 6 dB less: the quietest stands first."""
+    changes = {
+        f"{word} as wavy": {"inner_raceway": {"amplitudes": [size]}}
+        for word, size in {"twice": "40 nm", "half": "10 nm"}.items()
+    }
+    monkeypatch.setattr(BearingUnderLoad, "helping_changes", changes)
+    monkeypatch.setattr("asperity.studies.effects.SEEDS", 1)
+    Path("bearing.toml").write_text(as_case(SMALL).to_toml())
+    call("study", "bearing.toml", "--what-helps", "-o", "helps", "--quiet")
+    with Path("helps/effects.csv").open() as file:
+        rows = [row for row in csv.DictReader(file) if row["judged"] == "300 to 1800 Hz"]
+    assert [row["variant"] for row in rows] == ["half as wavy", "twice as wavy"]
+    effect = [float(row["effect [dB]"]) for row in rows]
+    assert effect == pytest.approx([-6.02, 6.02], abs=0.01)
+    page = Path("helps/study.html").read_text()
+    assert "half as wavy" in page
+    assert "radial velocity" in page
 
 
 def test_a_bearing_is_made_finer_and_asked_what_helps_by_command(monkeypatch):

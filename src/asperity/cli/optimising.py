@@ -12,7 +12,7 @@ from asperity.case.any_case import function_named
 from asperity.case.form import content, file_digest
 from asperity.cli.commands import mark_of, refuse_other_case
 from asperity.optimising.definition import load_aim
-from asperity.optimising.kinds import optimisation_of
+from asperity.optimising.kinds import optimisation_of, searched
 from asperity.progress import progress_bar
 from asperity.results import save
 from asperity.scenes.report import PAGE as REPORT
@@ -37,8 +37,8 @@ class ToldOptimisation:
     document: dict[str, Any]  # for programs; its columns head the table of bands
     rows: Sequence[Sequence[Any]]  # of that table
     page: str
+    # headings and rows of further tables, by their names among the `FILES`
     tables: Mapping[str, tuple[Sequence[str], Sequence[Sequence[Any]]]] = field(default_factory=dict)
-    """Headings and rows of further tables, by their names among the `FILES`."""
 
 
 def run_optimisation(
@@ -55,9 +55,8 @@ def run_optimisation(
     if not overwrite:
         refuse_other_case("texture", asked, written["case"], "optimisation")
     with files.alone_in(directory), progress_bar() as progress:
-        kind = optimisation_of(case)
-        found = kind.find(case, aim, progress)
-        told: ToldOptimisation = function_named(kind.told_by)(found, report=report)
+        found = searched(case, aim, progress)
+        told: ToldOptimisation = function_named(optimisation_of(case).told_by)(found, report=report)
         with files.together(directory, last=FILES["case"]) as new:
             _written(found, told, new, report=report)
             keys = any_case.in_toml(found.case, in_memory=lambda *_: FILES["texture"])
