@@ -12,7 +12,7 @@ from asperity.laws import Areal, HertzLaw, Linear, Printed, Shifted, Table, name
 from asperity.laws.layout import _straight_to_touch, force, on_curve
 from asperity.reduction.stiffness import ForceCurve, ForceTable
 from asperity.reduction.texture import StateTexture
-from asperity.rolling.assembly import at_rest
+from asperity.rolling.rest import at_rest
 from asperity.structures.body import Body
 
 K = 2.4e10  # N/m^1.5, a steel ball of 25 mm on steel
@@ -125,7 +125,8 @@ def test_a_body_at_rest_is_where_the_law_carries_its_load(load):
     def law(approach):
         return evaluate(PREPARED[1], 7, approach)
 
-    _, _, approach, stiffness = at_rest([Body.rigid(1.0, load)], np.zeros(1), np.zeros((1, 1)), [law])
+    one = [Body.rigid(1.0, load)], np.zeros(1), np.zeros((1, 1)), [law], np.array([load])
+    _, _, approach, stiffness = at_rest(*one)
     root = brentq(lambda s: law(s)[0] - load, -1e-3, 1e-2, xtol=1e-18)
     assert_allclose(approach, root, rtol=1e-7)
     assert_allclose(stiffness, law(approach[0])[1])

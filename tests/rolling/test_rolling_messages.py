@@ -12,10 +12,10 @@ from asperity.errors import ComputationError, Outcome
 from asperity.kernels import stepping
 from asperity.laws import HertzLaw, Linear
 from asperity.reduction.texture import StateTexture
-from asperity.rolling.assembly import at_rest
 from asperity.rolling.course import Course
 from asperity.rolling.ground import ground_of
 from asperity.rolling.mechanism import Mechanism, RollingContact, Side
+from asperity.rolling.rest import at_rest
 from asperity.rolling.roll import roll_bodies
 from asperity.rolling.soundness import free_motion, refuse_missed_load
 from asperity.rolling.trajectory import Path
@@ -93,7 +93,7 @@ def test_contacts_that_cannot_carry_together_are_told():
     one, none = np.ones((1, 1)), np.zeros((1, 1))
     pair = Body(one, none, none, np.ones((2, 1)), np.array([5.0]), np.zeros(2))
     with pytest.raises(ComputationError, match=r"do not come to rest on their contacts \(2\) at the start"):
-        at_rest([pair], np.array([0.0, 1e4]), np.zeros((2, 2)), [weak, weak])
+        at_rest([pair], np.array([0.0, 1e4]), np.zeros((2, 2)), [weak, weak], np.full(2, 2.5))
 
 
 def warned(law, over=BEAM, **changes):

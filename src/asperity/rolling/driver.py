@@ -2,26 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import block_diag
 
 from asperity.arguments import Array, positive, require
-from asperity.kernels.pointforce import Prepared
-from asperity.kernels.stepping import Motion, System
-from asperity.laws.spec import SteppedLaw
 from asperity.progress import Progress
 from asperity.rolling import assembly
 from asperity.rolling.course import Course, laid_out
-from asperity.rolling.ground import Ground, ground_of
+from asperity.rolling.ground import ground_of
 from asperity.rolling.ledger import Ledger, ledger_of
 from asperity.rolling.mechanism import Mechanism
+from asperity.rolling.rest import start_still
 from asperity.rolling.soundness import warn_of_counts
 from asperity.rolling.stepper import Stepper
 from asperity.store import Checkpoint
-from asperity.structures.body import Body
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,12 +81,10 @@ def roll_mechanism(
     course = Course(mechanism, h, settled + recorded)
     seen = np.zeros((0, mechanism.first_modes[-1])) if sensors is None else np.asarray(sensors, dtype=float)
     ground = ground_of(course, seen)
-    damping = np.array([law.damping for law in course.laws])
     loads = np.full(course.contacts, positive("load (N)", load))
     system = assembly.system_of(ground, course.bodies, loads, h, mechanism.constant)
     # with contacts that are soft enough for the time step
-    given = ground, course.bodies, system, course.at_start, damping
-    started = assembly.softened(_start, *given, highest_frequency)
+    started = assembly.softened(start_still, ground, system, course, highest_frequency)
     stepper = Stepper(course, *started, np.inf, displacements=True)
     energies = stepper.energies()
     stepper.run(progress, checkpoint)
@@ -120,36 +113,7 @@ def rest_of(mechanism: Mechanism, step: int, load: float) -> Array:
     loads = np.full(course.contacts, load)
     system = assembly.system_of(ground, course.bodies, loads, 1.0, mechanism.constant)
     laws = [laid_out(contact, at) for contact in mechanism.contacts]
-    return _start(ground, course.bodies, system, laws)[1].displacement[: mechanism.first_modes[-1]]
-
-
-def _start(
-    ground: Ground, bodies: Sequence[Body], system: System, prepared: Sequence[Prepared | SteppedLaw]
-) -> tuple[Array, Motion]:
-    """Stiffnesses of the contacts at rest (n,), N/m, and the state that goes on from there."""
-    n = len(system.loads)
-    shapes = assembly.shapes_at_contacts(ground, system)
-    rows = block_diag(*(body.contacts for body in bodies))
-    answers = shapes.any(axis=0) | (system.stiffness > 0.0)  # others there is nothing to say of
-    held = np.diag(np.where(answers, system.stiffness, 1.0))
-    matrix = block_diag(held, *(body.stiffness for body in bodies), np.eye(n))
-    constant = np.pad(system.constant, (0, shapes.shape[1] - len(system.constant)))
-    pressing = np.concatenate([-constant, *(body.pressing for body in bodies), np.zeros(n)])
-    every = np.hstack([shapes, rows, np.diag(np.sqrt(system.softening))])
-    laws, relative = assembly.evaluations(prepared)
-    given = matrix, pressing, every, np.zeros(n), system.loads
-    x, force, approach, stiffness = assembly.equilibrium(*given, laws, relative)
-    motion = assembly.at_zero(system)
-    count = shapes.shape[1]
-    motion.displacement[:] = x[:count]
-    motion.push[:] = constant + force @ shapes
-    first = count
-    for own, body in zip(motion.core, bodies, strict=True):
-        own[: len(body.mass)] = x[first : first + len(body.mass)]
-        first += len(body.mass)
-    motion.force[:] = motion.trial[:] = motion.elastic[:] = force
-    motion.approach[:] = approach
-    return stiffness, motion
+    return start_still(ground, course.bodies, system, laws)[1].displacement[: mechanism.first_modes[-1]]
 
 
 def _warn(stepper: Stepper) -> None:

@@ -18,7 +18,7 @@ from asperity.errors import InputError
 from asperity.kernels import pointforce
 from asperity.laws.spec import Law, SteppedLaw
 from asperity.progress import Progress
-from asperity.rolling import assembly, ground
+from asperity.rolling import assembly, ground, rest
 from asperity.rolling.course import Course
 from asperity.rolling.ledger import Ledger, ledger_of
 from asperity.rolling.mechanism import Mechanism, RollingContact, Side
@@ -155,9 +155,8 @@ def roll_bodies(
     course = Course(mechanism, time_step, path.total, whole=True)
     under = ground.ground_of(course, _rows_of(over, seen))
     system = assembly.system_of(under, bodies, assembly.body_loads(bodies), time_step)
-    given, damping = (under, bodies, system, course.everywhere), np.array([law.damping for law in laws])
-    at_rest = partial(assembly.start_at_rest, entering=not path.settled)
-    started = assembly.softened(at_rest, *given, damping, highest_frequency)
+    start_rolling = partial(rest.start_rolling, entering=not path.settled)
+    started = assembly.softened(start_rolling, under, system, course, highest_frequency)
     stepper = Stepper(course, *started, under.softest)
     energies = stepper.energies()
     try:

@@ -1,0 +1,263 @@
+"""Bodies set on what they roll over: at rest under their loads, and moving on as if they had long rolled."""
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Any
+
+import numpy as np
+from scipy.linalg import block_diag
+
+from asperity.arguments import Array, NDArray
+from asperity.errors import ComputationError
+from asperity.kernels.pointforce import Prepared, evaluate_all
+from asperity.kernels.rail import preload_channels
+from asperity.kernels.stepping import POWERS, Motion, System
+from asperity.laws.spec import SteppedLaw
+from asperity.rolling.ground import Ground
+from asperity.structures.body import Body
+
+Evaluation = Callable[[float], tuple[float, float]]
+"""Force, N, and stiffness, N/m, of an approach, m."""
+FIRST_MOVE = 1e-6  # m, of the contacts; doubled until they are at rest
+LARGEST_MOVE = 1.0  # m
+ITERATIONS = 200
+TOLERANCE, STEPPED_TOLERANCE = 1e-9, 1e-5
+"""Of the forces at rest, relative to the loads; contacts of stepped laws are themselves solved to one."""
+PRELOAD = 2.0
+"""Kernel lengths for which the load has rolled before the path."""
+LOADINGS = 20
+"""Times, at most, that a rail is loaded anew for bodies that share their load over several contacts."""
+ON_SUPPORT = 1e-9
+"""Time from a support that counts as none, s."""
+
+
+def at_rest(
+    bodies: Sequence[Body],
+    displaced: Array,
+    compliance: Array,
+    laws: Sequence[Evaluation],
+    scale: Array,
+    relative: float = TOLERANCE,
+    free: tuple[Array, Array] | None = None,
+) -> tuple[Array, Array, Array, Array]:
+    """Where bodies rest on laws, which give force, N, and stiffness, N/m, of an approach, m.
+
+    Coordinates of free modes (f,), then displacements y of all bodies (d,), one after another, upwards, and
+    of the contacts (n,) their forces, N, approaches as the laws see them, m, and stiffnesses, N/m.
+
+    What is rolled over is displaced by u (n,), m, whatever the forces, and all that yields by a compliance
+    Q Qᵀ (n, n), m/N, of structure and of the bodies' modes; modes that nothing but contacts holds have
+    shapes Φ (n, f) and are pressed by constant forces p₀ (f,). With q of these, y of the bodies and c of what
+    yields the approaches are δ = −(u + Φ q + A y + Q c). At rest p₀ + Φᵀ F = 0, K y + p = Aᵀ F and c = Qᵀ F,
+    which is where ½ yᵀKy + pᵀy − p₀ᵀq + ½ c² plus the energy of the contacts is least: steps of Newton's,
+    halved until they go down. The forces are exact to `relative` of their scale (n,), N. A
+    `ComputationError` says that nothing is at rest.
+    """
+    square, vectors = np.linalg.eigh(compliance)
+    n = len(displaced)
+    moved, pressed = (np.zeros((n, 0)), np.zeros(0)) if free is None else free
+    f = len(pressed)
+    contacts = block_diag(*(body.contacts for body in bodies))
+    shapes = np.hstack([moved, contacts, vectors * np.sqrt(square.clip(0.0))])
+    matrix = block_diag(np.zeros((f, f)), *(body.stiffness for body in bodies), np.eye(n))
+    pressing = np.concatenate([-pressed, *(body.pressing for body in bodies), np.zeros(n)])
+    x, force, approach, stiffness = equilibrium(matrix, pressing, shapes, displaced, scale, laws, relative)
+    return x[: f + contacts.shape[1]], force, approach, stiffness
+
+
+def equilibrium(
+    matrix: Array,
+    pressing: Array,
+    shapes: Array,
+    displaced: Array,
+    scale: Array,
+    laws: Sequence[Evaluation],
+    relative: float = TOLERANCE,
+) -> tuple[Array, Array, Array, Array]:
+    """Coordinates x (d,) with K x + p = Aᵀ F, and forces, approaches and stiffnesses of the contacts (n,).
+
+    The approaches are −(u + A x). K (d, d), p (d,) and A (n, d) are matrix, pressing and shapes, u (n,) what
+    is displaced; the forces are exact to `relative` of their scale (n,), N.
+    """
+    most = FIRST_MOVE
+
+    def state(x: Array) -> tuple[Array, Array, Array, Array]:
+        """Approaches, forces, stiffnesses, and the gradient of the energy."""
+        approach = -(displaced + shapes @ x)
+        force, stiffness = np.array([law(float(at)) for law, at in zip(laws, approach, strict=True)]).T
+        return approach, force, stiffness, matrix @ x + pressing - shapes.T @ force
+
+    x = np.zeros(len(pressing))
+    approach, force, stiffness, gradient = state(x)
+    for _ in range(ITERATIONS):
+        firm = np.maximum(stiffness, scale / LARGEST_MOVE)
+        move = -_solved(matrix + (shapes.T * firm) @ shapes, gradient)
+        closer = -shapes @ move
+        rounding = 1e-15 * (np.abs(displaced) + np.abs(shapes) @ np.abs(x))
+        if np.all(np.abs(firm * closer) <= relative * scale + firm * rounding):
+            return x + move, force + firm * closer, approach + closer, stiffness
+        move *= min(1.0, most / float(np.abs(closer).max()))
+        most = min(2.0 * most, LARGEST_MOVE)
+        slope = float(gradient @ move)
+        for _ in range(60):
+            approach, force, stiffness, gradient = state(x + move)
+            if float(gradient @ move) <= 0.5 * abs(slope):
+                break
+            move, slope = 0.5 * move, 0.5 * slope
+        x = x + move
+    raise ComputationError(
+        f"the bodies do not come to rest on their contacts ({len(laws)}) at the start of the path: under "
+        f"loads of {_some(scale)} N the last forces are {_some(force)} N, at approaches of "
+        f"{_some(approach)} m",
+        "smaller loads, or contact.approaches that reach higher forces",
+    )
+
+
+def _solved(matrix: Array, right: Array) -> Array:
+    """The least solution where some motion of all is held by nothing, and no force drives it."""
+    try:
+        return np.asarray(np.linalg.solve(matrix, right))
+    except np.linalg.LinAlgError:
+        return np.asarray(np.linalg.lstsq(matrix, right, rcond=None)[0])
+
+
+def _some(values: Array) -> str:
+    return ", ".join(f"{value:.4g}" for value in values[:8])
+
+
+def evaluated(law: Prepared | SteppedLaw, approach: float) -> tuple[float, float]:
+    """Force, N, and stiffness, N/m, of a law at the start, for an approach, m."""
+    if not isinstance(law, Prepared):
+        return law.evaluate(0, approach)
+    force, stiffness, _ = evaluate_all(law, np.array([approach]), 0)
+    return float(force[0]), float(stiffness[0])
+
+
+def shapes_at_contacts(ground: Ground, system: System) -> Array:
+    """Mode shapes of what is rolled over, and of the bodies (n, s + b f), at the contacts."""
+    n, f = system.shapes.shape
+    flexible = np.zeros((n, len(system.core_step), f))
+    flexible[np.arange(n), system.body] = system.shapes
+    return np.hstack([ground.shapes, flexible.reshape(n, -1)])
+
+
+def evaluations(prepared: Sequence[Prepared | SteppedLaw]) -> tuple[list[Evaluation], float]:
+    """Laws at the start, and to what the forces at rest are exact, relative to the loads."""
+    looked_up = all(isinstance(law, Prepared) for law in prepared)
+    return [partial(evaluated, law) for law in prepared], TOLERANCE if looked_up else STEPPED_TOLERANCE
+
+
+def start_still(
+    ground: Ground, bodies: Sequence[Body], system: System, prepared: Sequence[Prepared | SteppedLaw]
+) -> tuple[Array, Motion]:
+    """Stiffnesses of contacts at rest at the start of a run (n,), N/m, and a state without motion.
+
+    Modes that nothing holds are where constant forces and contacts hold each other; without constant forces
+    on any structure they stay where they are.
+    """
+    stiffness, motion, _ = _set_down(ground, bodies, system, prepared)
+    return stiffness, motion
+
+
+def start_rolling(
+    ground: Ground,
+    bodies: Sequence[Body],
+    system: System,
+    prepared: Sequence[Prepared | SteppedLaw],
+    *,
+    entering: bool = False,
+) -> tuple[Array, Motion]:
+    """As `start_still`, in motion: modes and contacts move as under constant loads that have long rolled.
+
+    Displacements of modes are the static ones: what is left to ring is less by (k v/ω)² than that of a mode
+    of wavenumber k. A force that is entering on a support has just come onto a structure at rest.
+    """
+    stiffness, motion, rates = _set_down(ground, bodies, system, prepared)
+    s = len(ground.natural)
+    force = motion.force[0]
+    moving = force * ~_on_support(ground) if entering else force
+    motion.velocity[:s] = (moving @ ground.rates) * _softness(system)[:s]
+    rates = rates + ground.shapes @ motion.velocity[:s]
+    rates += ground.rates @ motion.displacement[:s]
+    d = system.core_shapes.shape[1]
+    for index, body in enumerate(bodies):
+        own = rates[system.body == index]
+        motion.core[index, d : d + len(body.mass)] = np.linalg.lstsq(body.contacts, -own, rcond=None)[0]
+    return stiffness, motion
+
+
+def _softness(system: System) -> Array:
+    """Static compliance of each mode (m,), 0 of one that nothing holds."""
+    held = system.stiffness > 0.0
+    return np.divide(1.0, system.stiffness, out=np.zeros(len(held)), where=held)
+
+
+def _set_down(
+    ground: Ground, bodies: Sequence[Body], system: System, prepared: Sequence[Prepared | SteppedLaw]
+) -> tuple[Array, Motion, Array]:
+    """Stiffnesses of contacts at rest, the state of rest, and how fast a rail moves under them (n,), m/s."""
+    n = len(system.loads)
+    shapes = shapes_at_contacts(ground, system)
+    softness = _softness(system)
+    constant = np.pad(system.constant, (0, len(softness) - len(system.constant)))
+    free = shapes.any(axis=0) & (system.stiffness == 0.0) & constant.any()
+    compliance = ground.yields + (shapes * softness) @ shapes.T + np.diag(system.softening)
+    laws, relative = evaluations(prepared)
+    force = np.concatenate([body.static_loads for body in bodies])
+    pressed = shapes @ (softness * constant)
+    displaced = pressed
+    rates = np.zeros(n)
+    motion = at_zero(system)
+    for _ in range(LOADINGS if ground.memory else 1):
+        if ground.memory:
+            motion = at_zero(system)
+            rail, rates = _rolled_up(system, motion, force, int(PRELOAD * ground.memory))
+            displaced = rail - ground.yields @ force + pressed
+        before = force
+        given = bodies, displaced, compliance, laws, system.loads, relative
+        coordinates, force, approach, stiffness = at_rest(*given, (shapes[:, free], constant[free]))
+        change = np.abs(force - before).max()
+        if change <= relative * np.abs(force).max():
+            break
+    motion.push[:] = constant + force @ shapes
+    motion.displacement[:] = motion.push * softness
+    first = int(free.sum())
+    motion.displacement[free] = coordinates[:first]
+    for index, body in enumerate(bodies):
+        count = len(body.mass)
+        motion.core[index, :count] = coordinates[first : first + count]
+        first += count
+    motion.force[:] = motion.trial[:] = motion.elastic[:] = force
+    motion.approach[:] = approach
+    return stiffness, motion, rates
+
+
+def _on_support(ground: Ground) -> NDArray[np.bool_]:
+    """Which contacts (n,) start where no mode of the structure moves."""
+    largest, steepest = (np.abs(each).max(axis=1, initial=0.0) for each in (ground.shapes, ground.rates))
+    return np.asarray(largest <= ON_SUPPORT * steepest)
+
+
+def _rolled_up(system: System, motion: Motion, force: Array, steps: int) -> tuple[Array, Array]:
+    """Let constant forces roll on a rail; its displacements under the contacts, m, and their rates, m/s."""
+    before = np.zeros(len(force))
+    channels = system.channels
+    preload_channels(channels, motion, force, steps, before)
+    rates = (motion.rail_ahead - before) / system.time_step
+    np.add.at(motion.rail_ahead, channels.receiver, motion.rail_now * force[channels.source])
+    return motion.rail_ahead.copy(), rates
+
+
+def at_zero(system: System) -> Motion:
+    """A state of all zeros."""
+    m = len(system.stiffness)
+    n = len(system.loads)
+    p = len(system.channels.source)
+    shapes: dict[str, Any] = dict.fromkeys(("displacement", "velocity", "push", "ahead"), m)
+    shapes |= dict.fromkeys(("elastic", "rail_ahead", "trial", "compliance", "rate", "climb"), n)
+    shapes |= dict.fromkeys(("core", "core_ahead"), system.core_pressed.shape)
+    shapes |= {"force": (2, n), "approach": (2, n), "power": POWERS, "ledger": 6, "rail_now": p}
+    shapes |= {"rail": (p, system.channels.decay.shape[1])}
+    shapes |= {"ring": (n, system.channels.scattered.shape[2] if p else 0)}
+    arrays = {name: np.zeros(shape) for name, shape in shapes.items()}
+    return Motion(**arrays, counts=np.zeros(3, dtype=np.int64))
