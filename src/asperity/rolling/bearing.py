@@ -211,7 +211,7 @@ def roll_bearing(
         turning.cage(range(turning.total + 1 - steps, turning.total + 1)),
         run.contact_force[INNER:contacts:each],
         run.contact_force[OUTER:contacts:each],
-        np.concatenate(run.bodies),
+        np.concatenate(run.degrees_of_freedom),
         run.displacement[:3],
         run.displacement[3:6],
         run.acceleration[6:],

@@ -54,13 +54,21 @@ class Course:
         self.bodies = self.mechanism.still()
         self.laws = [contact.law for contact in self.mechanism.contacts]
         self.contacts = len(self.laws)
-        self.everywhere: list[Any] = []
-        self.at_start = [] if self.whole else self.pieces(range(1))
-        if self.whole or not all(isinstance(law, Prepared) for law in self.at_start):
-            self.at_start = self.everywhere = self.pieces(range(self.total + 1))
         # approach of each contact that is within its data at all steps laid out; and where these begin
         self.within = np.full(self.contacts, np.inf)
         self.begun = self.total
+
+    @cached_property
+    def everywhere(self) -> list[Any]:
+        """Laws that are laid out on all the way; none where they are laid out piece by piece."""
+        contacts = self.mechanism.contacts
+        whole = self.whole or not all(isinstance(laid_out(each, range(1)), Prepared) for each in contacts)
+        return [laid_out(contact, range(self.total + 1)) for contact in contacts] if whole else []
+
+    @cached_property
+    def at_start(self) -> list[Any]:
+        """Laws whose first step is the first of all."""
+        return self.everywhere or self.pieces(range(1))
 
     def place(self, contact: int, step: int) -> float:
         """Position of a contact at a step, m."""

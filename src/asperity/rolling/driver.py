@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from asperity.arguments import Array, positive, require
+from asperity.arguments import Array, NDArray, positive, require
+from asperity.errors import Outcome
 from asperity.progress import Progress
 from asperity.rolling import assembly
 from asperity.rolling.course import Course, laid_out
-from asperity.rolling.ground import ground_of
+from asperity.rolling.ground import ground_of, warn_if_bent
 from asperity.rolling.ledger import Ledger, ledger_of
 from asperity.rolling.mechanism import Mechanism
 from asperity.rolling.rest import start_still
@@ -19,18 +21,90 @@ from asperity.rolling.stepper import Stepper
 from asperity.store import Checkpoint
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class RolledMechanism:
     """What was recorded of n contacts at t steps, after the run-in."""
 
+    time: Array  # (t,), s, uniform from zero, after the run-in
+    body: NDArray[np.int64]  # (n,), to which body each contact belongs
     contact_force: Array  # (n, t), N, compression positive
-    bodies: tuple[Array, ...]  # coordinates of each (d, t), m or rad, positive as its contacts open
-    displacement: Array  # (sensors, t), m
-    acceleration: Array  # (sensors, t), m/s²
-    reached: Array  # (n, 2), least and largest contact force in run-in and run, N
+    history: Array  # (n, m), contact force of run-in and run, N
+    relative_displacement: Array  # (n, t), approach of the mean surfaces, m, positive closing
+    over_displacement: Array  # (n, t), of what is rolled over, at the contacts, m, positive downwards
+    rolling_displacement: Array  # (n, t), of what rolls, at the contacts, m, positive downwards
+    degrees_of_freedom: tuple[Array, ...]  # of each body (d, t), m or rad, positive as its contacts open
+    displacement: Array  # (sensors, t), of structures, m; without rows where it was not asked for
+    acceleration: Array  # (sensors, t), of structures, m/s², positive as the contact force pushes
     softening: Array  # (n,), compliance that the time step puts in series with the contacts, m/N
     energy: Ledger  # where the work of the loads went, in run-in and run
-    unconverged_steps: int
+    evaluations: int  # of the laws, in run-in and run
+    unconverged_steps: int  # time steps in which a contact force missed the tolerance, of run-in and run
+    outcome: Outcome  # whether all steps converged
+
+    @property
+    def reached(self) -> Array:
+        """Least and largest contact force in run-in and run (n, 2), N."""
+        return np.column_stack([self.history.min(axis=1), self.history.max(axis=1)])
+
+
+def carried(
+    course: Course,
+    loads: Array,
+    start: assembly.Start,
+    *,
+    sensors: Array,
+    displacements: bool = False,
+    highest_frequency: float | None = None,
+    progress: Progress | None = None,
+    checkpoint: Checkpoint | None = None,
+) -> Stepper:
+    """A mechanism that was set down, with contacts soft enough for the time step, and carried on to the end.
+
+    By scales of the contact forces (n,), N, what sets it down, and rows of sensors (k, s) over all modes,
+    whose displacements are recorded beside accelerations where they are asked for. What is doubted is warned
+    of.
+    """
+    ground = ground_of(course, sensors)
+    system = assembly.system_of(ground, course.bodies, loads, course.time_step, course.mechanism.constant)
+    started = assembly.softened(start, ground, system, course, highest_frequency)
+    stepper = Stepper(course, *started, ground.softest, displacements)
+    try:
+        stepper.run(progress, checkpoint)
+    finally:  # why a motion may have run away
+        _warn_if_bent(course.mechanism, stepper.record.over_displacement)
+    for law in stepper.stepped.values():
+        law.warn_of_flaws()
+    names = [law.name for law in course.laws]
+    warn_of_counts(names, stepper.motion.counts, course.beyond(stepper.seen), course.total + 1)
+    return stepper
+
+
+def _warn_if_bent(mechanism: Mechanism, displaced: Array) -> None:
+    """Compare displacements of structures under their contacts (n, t), m, with what their theory allows."""
+    for index, structure in enumerate(mechanism.structures):
+        alone = [[side.structure for side in contact.sides] == [index] for contact in mechanism.contacts]
+        warn_if_bent(structure, displaced[alone])
+
+
+def recorded(stepper: Stepper, settled: int) -> dict[str, Any]:
+    """Fields of a `RolledMechanism` that has run in over so many steps."""
+    kept = slice(settled, None)
+    records = {name: value[..., kept] for name, value in stepper.record._asdict().items()}
+    cores = records.pop("core")
+    unconverged = int(stepper.motion.counts[1])
+    return records | {
+        "time": np.asarray(stepper.course.time_step * np.arange(cores.shape[-1])),
+        "body": stepper.system.body,
+        "history": stepper.record.contact_force,
+        "degrees_of_freedom": tuple(
+            core[: len(body.mass)] for body, core in zip(stepper.course.mechanism.bodies, cores, strict=False)
+        ),
+        "softening": stepper.system.softening,
+        "energy": ledger_of(stepper),
+        "evaluations": int(stepper.motion.counts[2]),
+        "unconverged_steps": unconverged,
+        "outcome": Outcome.STEPS_UNCONVERGED if unconverged else Outcome.CONVERGED,
+    }
 
 
 def roll_mechanism(
@@ -76,33 +150,20 @@ def roll_mechanism(
     """
     h = positive("time step (s)", time_step)
     settled = round(settling / h)
-    recorded = round(positive("duration (s)", duration) / h)
-    require(recorded >= 1, "duration (s)", duration, f"at least one time step of {h:.6g} s")
-    course = Course(mechanism, h, settled + recorded)
-    seen = np.zeros((0, mechanism.first_modes[-1])) if sensors is None else np.asarray(sensors, dtype=float)
-    ground = ground_of(course, seen)
-    loads = np.full(course.contacts, positive("load (N)", load))
-    system = assembly.system_of(ground, course.bodies, loads, h, mechanism.constant)
-    # with contacts that are soft enough for the time step
-    started = assembly.softened(start_still, ground, system, course, highest_frequency)
-    stepper = Stepper(course, *started, np.inf, displacements=True)
-    energies = stepper.energies()
-    stepper.run(progress, checkpoint)
-    _warn(stepper)
-    kept = slice(settled, None)
-    record = stepper.record
-    return RolledMechanism(
-        record.contact_force[:, kept],
-        tuple(
-            core[: len(body.mass), kept] for body, core in zip(mechanism.bodies, record.core, strict=False)
-        ),
-        record.displacement[:, kept],
-        record.acceleration[:, kept],
-        np.column_stack([record.contact_force.min(axis=1), record.contact_force.max(axis=1)]),
-        stepper.system.softening,
-        ledger_of(stepper, energies),
-        int(stepper.motion.counts[1]),
+    steps = round(positive("duration (s)", duration) / h)
+    require(steps >= 1, "duration (s)", duration, f"at least one time step of {h:.6g} s")
+    course = Course(mechanism, h, settled + steps)
+    stepper = carried(
+        course,
+        np.full(course.contacts, positive("load (N)", load)),
+        start_still,
+        sensors=np.zeros((0, mechanism.first_modes[-1])) if sensors is None else np.asarray(sensors, float),
+        displacements=True,
+        highest_frequency=highest_frequency,
+        progress=progress,
+        checkpoint=checkpoint,
     )
+    return RolledMechanism(**recorded(stepper, settled))
 
 
 def rest_of(mechanism: Mechanism, step: int, load: float) -> Array:
@@ -114,14 +175,3 @@ def rest_of(mechanism: Mechanism, step: int, load: float) -> Array:
     system = assembly.system_of(ground, course.bodies, loads, 1.0, mechanism.constant)
     laws = [laid_out(contact, at) for contact in mechanism.contacts]
     return start_still(ground, course.bodies, system, laws)[1].displacement[: mechanism.first_modes[-1]]
-
-
-def _warn(stepper: Stepper) -> None:
-    """Warn of steps that missed the tolerance, and of laws that were continued beyond their data."""
-    course = stepper.course
-    record = stepper.record
-    seen = record.relative_displacement - stepper.system.softening[:, None] * record.contact_force
-    for solved in stepper.stepped.values():
-        solved.warn_of_flaws()
-    names = [law.name for law in course.laws]
-    warn_of_counts(names, stepper.motion.counts, course.beyond(seen), seen.shape[1])

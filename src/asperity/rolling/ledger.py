@@ -38,9 +38,10 @@ class Ledger:
         return abs(loads - sum(others)) / self.throughput if self.throughput > 0.0 else 0.0
 
 
-def ledger_of(stepper: Stepper, before: tuple[float, float, float]) -> Ledger:
-    """Balance of a run that started with these energies of structure, of bodies and of their loads, J."""
-    structure, bodies, loads = (now - then for now, then in zip(stepper.energies(), before, strict=True))
+def ledger_of(stepper: Stepper) -> Ledger:
+    """Balance of a run."""
+    both = zip(stepper.energies(), stepper.energies_at_start, strict=True)
+    structure, bodies, loads = (now - then for now, then in both)
     ledger = stepper.motion.ledger.tolist()
     shares = {
         "work of the loads": -loads,

@@ -1,7 +1,4 @@
-"""Bodies roll over a structure on any number of contacts, and what is kept of it.
-
-How a run went is told: contact lost, load carried, steps not converged, laws continued beyond their data.
-"""
+"""Bodies roll over a structure on any number of contacts: contact lost, load carried."""
 
 from __future__ import annotations
 
@@ -12,17 +9,17 @@ from typing import Any
 
 import numpy as np
 
-from asperity import errors
 from asperity.arguments import Array, ArrayLike, NDArray
 from asperity.errors import InputError
 from asperity.kernels import pointforce
 from asperity.laws.spec import Law, SteppedLaw
 from asperity.progress import Progress
-from asperity.rolling import assembly, ground, rest
+from asperity.rolling.assembly import body_loads, offsets_of
 from asperity.rolling.course import Course
-from asperity.rolling.ledger import Ledger, ledger_of
+from asperity.rolling.driver import RolledMechanism, carried, recorded
 from asperity.rolling.mechanism import Mechanism, RollingContact, Side
-from asperity.rolling.soundness import STILL, free_motion, refuse_missed_load, steady, warn_of_counts
+from asperity.rolling.rest import start_rolling
+from asperity.rolling.soundness import STILL, free_motion, refuse_missed_load, steady
 from asperity.rolling.stepper import Stepper
 from asperity.rolling.trajectory import Path
 from asperity.speeds import SpeedCourse
@@ -32,29 +29,15 @@ from asperity.structures.modal import Modal
 from asperity.structures.rail_poles import RailBetween
 
 
-@dataclass(frozen=True, eq=False)
-class RolledBodies:
-    """Bodies have rolled over a structure on c contacts, numbered through in the order of the bodies."""
+@dataclass(frozen=True, eq=False, kw_only=True)
+class RolledBodies(RolledMechanism):
+    """Bodies have rolled over a structure on n contacts, numbered through in the order of the bodies."""
 
-    time: Array  # (n,), s, uniform from zero, after the run-in
-    positions: Array  # (c, n), of the contacts, m
-    body: NDArray[np.int64]  # (c,), to which body each contact belongs
-    contact_force: Array  # (c, n), N, compression positive
-    history: Array  # (c, m), contact force of run-in and run, N
-    history_start: Array  # (c,), position of its first value, m
-    relative_displacement: Array  # (c, n), approach of the mean surfaces, m, positive closing
-    over_displacement: Array  # (c, n), of what is rolled over, at the contacts, m, positive downwards
-    rolling_displacement: Array  # (c, n), of what rolls, at the contacts, m, positive downwards
-    degrees_of_freedom: tuple[Array, ...]  # of each body (d, n), m or rad, positive upwards
-    acceleration: Array  # (sensors, n), of what is rolled over, m/s², positive downwards
-    in_contact: NDArray[np.bool_]  # (c, n), whether the surfaces touch
-    # (c, 2), least and largest approach that each law was asked for, from its plane, m, in run-in and run
+    positions: Array  # (n, t), of the contacts, m
+    history_start: Array  # (n,), position of the first value of `history`, m
+    in_contact: NDArray[np.bool_]  # (n, t), whether the surfaces touch
+    # (n, 2), least and largest approach that each law was asked for, from its plane, m, in run-in and run
     visited: Array
-    softening: Array  # (c,), compliance that the time step puts in series with the contacts, m/N
-    energy: Ledger  # where the work of the loads went, in run-in and run
-    evaluations: int  # of the laws, in run-in and run
-    unconverged_steps: int  # time steps in which a contact force missed the tolerance, of run-in and run
-    outcome: errors.Outcome  # whether all steps converged
 
     @property
     def vibrates(self) -> bool:
@@ -145,7 +128,7 @@ def roll_bodies(
         _refuse_changing(speed)
     whole = Path.laid(start, speed, time_step, duration, settling)
     ahead, seen = (np.atleast_1d(np.asarray(given, dtype=float)) for given in (positions, sensors))
-    path = whole.ahead(assembly.offsets_of(bodies, laws, ahead))
+    path = whole.ahead(offsets_of(bodies, laws, ahead))
     structures = [] if over is None else [over]
     contacts = [
         RollingContact(law, way.places, tuple(Side(index, way) for index in range(len(structures))))
@@ -153,17 +136,25 @@ def roll_bodies(
     ]
     mechanism = Mechanism(structures, bodies, contacts)
     course = Course(mechanism, time_step, path.total, whole=True)
-    under = ground.ground_of(course, _rows_of(over, seen))
-    system = assembly.system_of(under, bodies, assembly.body_loads(bodies), time_step)
-    start_rolling = partial(rest.start_rolling, entering=not path.settled)
-    started = assembly.softened(start_rolling, under, system, course, highest_frequency)
-    stepper = Stepper(course, *started, under.softest)
-    energies = stepper.energies()
-    try:
-        stepper.run(progress, checkpoint)
-    finally:  # why a motion may have run away
-        ground.warn_if_bent(over, stepper.record.over_displacement)
-    return _rolled(stepper, path, energies)
+    stepper = carried(
+        course,
+        body_loads(bodies),
+        partial(start_rolling, entering=not path.settled),
+        sensors=_rows_of(over, seen),
+        highest_frequency=highest_frequency,
+        progress=progress,
+        checkpoint=checkpoint,
+    )
+    touching = np.array(list(map(in_contact, course.everywhere, stepper.record.contact_force, stepper.seen)))
+    _refuse_missed_loads(stepper, path, touching)
+    kept = slice(path.settled, None)
+    return RolledBodies(
+        **recorded(stepper, path.settled),
+        positions=path.positions[:, kept],
+        history_start=path.starts,
+        in_contact=touching[:, kept],
+        visited=np.array(list(map(_visited, course.everywhere, stepper.seen))),
+    )
 
 
 def _refuse_changing(speed: float) -> None:
@@ -188,42 +179,6 @@ def _rows_of(over: Modal | RailBetween | None, sensors: Array) -> Array:
     return np.zeros((0, 0))
 
 
-def _rolled(stepper: Stepper, path: Path, energies: tuple[float, float, float]) -> RolledBodies:
-    """What is kept of a run that started with these energies."""
-    record = stepper.record
-    system = stepper.system
-    counts = stepper.motion.counts
-    kept = slice(path.settled, None)
-    softened = system.softening[:, None] * record.contact_force
-    seen = record.relative_displacement - softened
-    prepared = stepper.course.everywhere
-    apart = np.array(list(map(flying, prepared, record.contact_force, seen)))
-    for law in stepper.stepped.values():
-        law.warn_of_flaws()
-    names = [law.name for law in stepper.course.laws]
-    warn_of_counts(names, counts, stepper.course.beyond(seen), seen.shape[1])
-    _refuse_missed_loads(stepper, path, apart)
-    apart = apart[:, kept]
-    records = {name: value[..., kept] for name, value in record._asdict().items() if name != "displacement"}
-    cores = zip(stepper.course.bodies, records.pop("core"), strict=True)
-    return RolledBodies(
-        **records,
-        time=path.time,
-        positions=path.positions[:, kept],
-        body=system.body,
-        history=record.contact_force,
-        history_start=path.starts,
-        degrees_of_freedom=tuple(core[: len(body.mass)] for body, core in cores),
-        in_contact=~apart,
-        visited=np.array(list(map(_visited, prepared, seen))),
-        softening=system.softening,
-        energy=ledger_of(stepper, energies),
-        evaluations=int(counts[2]),
-        unconverged_steps=int(counts[1]),
-        outcome=errors.Outcome.STEPS_UNCONVERGED if counts[1] else errors.Outcome.CONVERGED,
-    )
-
-
 def _visited(prepared: pointforce.Prepared | SteppedLaw, approach: Array) -> tuple[float, float]:
     """Least and largest approach from the plane of a law, m; all there are, of one that Python steps."""
     if not isinstance(prepared, pointforce.Prepared):
@@ -232,13 +187,13 @@ def _visited(prepared: pointforce.Prepared | SteppedLaw, approach: Array) -> tup
     return float(from_plane.min()), float(from_plane.max())
 
 
-def _refuse_missed_loads(stepper: Stepper, path: Path, apart: NDArray[np.bool_]) -> None:
-    """Hold each body that nothing but its contacts holds to its load; `apart` (c, n) at every step."""
+def _refuse_missed_loads(stepper: Stepper, path: Path, touching: NDArray[np.bool_]) -> None:
+    """Hold each body that nothing but its contacts holds to its load; `touching` (n, m) at every step."""
     record = stepper.record
     of = stepper.system.body
     touched = []  # how far texture and contact displace bodies while they touch, m
-    for approach, off in zip(record.relative_displacement, apart, strict=True):
-        touched.append(0.0 if off.all() else float(np.ptp(approach[~off])))
+    for approach, on in zip(record.relative_displacement, touching, strict=True):
+        touched.append(float(np.ptp(approach[on])) if on.any() else 0.0)
     sunk = stepper.softest * sum(float(np.abs(body.static_loads).sum()) for body in stepper.course.bodies)
     for k, body in enumerate(stepper.course.bodies):
         own = of == k
@@ -250,17 +205,19 @@ def _refuse_missed_loads(stepper: Stepper, path: Path, apart: NDArray[np.bool_])
             refuse_missed_load(name, force, load, mass, reach, path.time_step, path.settled)
 
 
-def flying(prepared: pointforce.Prepared | SteppedLaw, force: Array, approach: Array) -> NDArray[np.bool_]:
-    """Whether the bodies are apart at each step, by force, N, and approach, m, (n,) each.
+def in_contact(
+    prepared: pointforce.Prepared | SteppedLaw, force: Array, approach: Array
+) -> NDArray[np.bool_]:
+    """Whether the surfaces touch at each step, by force, N, and approach, m, (n,) each.
 
-    Never for a contact that can pull.
+    Always where the contact can pull.
     """
     if isinstance(prepared, pointforce.Prepared):
         if prepared.bilateral:
-            return np.zeros(force.shape, dtype=bool)
+            return np.ones(force.shape, dtype=bool)
         if prepared.damped_in_flight:
             force = pointforce.evaluate_all(prepared, approach, 0)[0]
-    return np.asarray(force <= 0.0)
+    return np.asarray(force > 0.0)
 
 
 def _varies(record: Array) -> bool:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from asperity.arguments import NDArray
+from asperity.arguments import Array, NDArray
 from asperity.errors import ComputationError, InputError
 from asperity.kernels import stepping
 from asperity.kernels.pointforce import Prepared, evaluate
@@ -57,6 +57,7 @@ class Stepper:
         self.motion.counts[0] = -1
         self._advance(0, np.inf)
         self.motion.approach[1] = self.motion.approach[0]
+        self.energies_at_start = self.energies()
         self.started = self.motion.core[:, states // 2 :].copy()  # rates of the bodies
 
     def energies(self) -> tuple[float, float, float]:
@@ -75,6 +76,12 @@ class Stepper:
             pressed += float(body.pressing @ y)
         pressed -= float(system.constant @ motion.displacement) if len(system.constant) else 0.0
         return float(modes[:structure].sum()), stored, pressed
+
+    @property
+    def seen(self) -> Array:
+        """Approaches that the laws saw at all steps (n, t), m: without what softened contacts took."""
+        record = self.record
+        return record.relative_displacement - self.system.softening[:, None] * record.contact_force
 
     def run(self, progress: Progress | None, checkpoint: Checkpoint | None) -> None:
         """Go on to the end of the path, from where a checkpoint was left, if it was."""
