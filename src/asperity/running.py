@@ -40,8 +40,8 @@ def run(
         Whether the case is computed again with each of its settings made finer in turn: the result then has
         the group convergence, which says how far it depends on them.
     brief : bool
-        Whether what only a report shows is left out: statistics and spectra of the path, and the expected
-        errors of the laws. Everything else has the same digits.
+        Whether what only a report shows is left out: statistics and spectra of the path, the expected
+        errors of the laws, and what was measured beside it. Everything else has the same digits.
 
     Returns
     -------
@@ -68,6 +68,7 @@ def run(
     from asperity.case.any_case import ReadyCase, function_named
     from asperity.case.cases import as_case
     from asperity.errors import PhysicsWarning
+    from asperity.observables.beside_result import with_measured
     from asperity.progress import shown_progress
     from asperity.scenes.report import Result
     from asperity.threads import one_thread_in_linear_algebra
@@ -88,6 +89,8 @@ def run(
                 from asperity.convergence import with_convergence
 
                 result = with_convergence(prepared, result, told)
+            if not brief:
+                result = with_measured(prepared.case, result)
     except ComputationError:
         _warn_again(caught)  # they may say why
         raise
@@ -135,7 +138,9 @@ def open_result(path: str | os.PathLike[str]) -> Result:
 def prepare_case(case: AnyCase, source: str = "case") -> ReadyCase:
     """Lay a case of any kind ready to be run or announced; messages call it `source`."""
     from asperity.case.any_case import function_named
+    from asperity.observables.reading import tables_beside
 
+    tables_beside(case)  # refuses what it cannot be held against
     prepared: ReadyCase = function_named(case.PREPARED_BY)(case, source)
     return prepared
 

@@ -10,12 +10,13 @@ from asperity.schema import (
     bearing,
     contact,
     convergence,
+    measured,
     provenance,
     rolling,
     spectra,
 )
 
-SHARED = (provenance, contact, rolling, spectra, convergence)
+SHARED = (provenance, contact, rolling, spectra, convergence, measured)
 
 PAGE = Path(__file__).parents[2] / "docs" / "reference" / "result_file.md"
 HEAD = f"""# What `run.nc` holds
@@ -25,8 +26,8 @@ version is refused, with what to do. Every variable has `units` and `long_name`;
 (NaN), `missing` says why. "Not in all" says which results have what not all have.
 """
 OF_BEARINGS = """A run of a ball bearing holds these and, of the above, the attributes of the root and of
-`scenario`, `contact: validity`, laws, time and frequency, force levels in bands with how sure they are, and
-the energy balance.
+`scenario`, `contact: validity`, laws, time and frequency, force levels in bands with how sure they are, what
+was measured, and the energy balance.
 """
 
 

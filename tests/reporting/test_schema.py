@@ -18,7 +18,7 @@ from small_cases import BEARING, unmarked
 
 SOURCE = Path(asperity.__file__).parent
 GROUPS = ("scenario", "surface", "contact", "rolling", "spectra", "track", "pass_by", "convergence",
-          "effects", "bearing")  # fmt: skip
+          "measured", "effects", "bearing")  # fmt: skip
 
 
 ENTRIES, ATTRIBUTES = contents_of(*SHARED, schema)
@@ -63,7 +63,7 @@ def test_attributes_are_those_of_the_schema(real_run):
 ON_TRACK = "over a track", "of a wheel", "rail is rough", "loss factors"
 NOWHERE = (
     "calls them nothing else", "of several contacts", "contacts at equal distances", "measured on the track",
-    "passage was measured", "says what passes", "disc and tread vibrate", "bays differ", "[creep] gives",
+    "passage was measured", "names tables", "says what passes", "disc and tread vibrate", "bays differ", "[creep] gives",
 )  # fmt: skip
 OTHERS = {
     "ball-on-beam": (*NOWHERE, *ON_TRACK, "train"),
@@ -137,7 +137,11 @@ def test_every_figure_of_a_real_run_is_drawn(real_run):
             elsewhere = chapter.name == "acceleration" if track else any(word in told for word in ON_TRACK)
             elsewhere |= chapter.name == "contacts" and not several
             elsewhere |= chapter.name in (*OF_BEARINGS, "creep")  # of a wheel that is said to creep
-            elsewhere |= part.name in ("pass_by_bands", "out_of_round")  # of what was measured
+            elsewhere |= part.name in (
+                "pass_by_bands",
+                "beside_measured",
+                "out_of_round",
+            )  # of what was measured
             assert (part.name in drawn) != elsewhere, part.name
 
 

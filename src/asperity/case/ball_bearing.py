@@ -17,6 +17,7 @@ from asperity.case import toml
 from asperity.case.any_case import LAW, AnyCase
 from asperity.case.body import DAMPING
 from asperity.case.form import Numbers, Section, name_of, section
+from asperity.case.measured_tables import MeasuredBearingKeys
 from asperity.case.ready_lists import IN_BEARINGS, NamedChanges, listed_changes
 from asperity.case.sections import DURATION, DURATION_OR_ZERO
 from asperity.case.speed import Speed, span_of
@@ -391,6 +392,11 @@ class BearingUnderLoad(AnyCase):
     balls: AroundKeys = section(AroundKeys, "what is on each ball all around")
     fault: FaultKeys = section(
         FaultKeys, "a fault of a raceway or of a ball; of several each below [[fault]]", repeated=True
+    )
+    measured: MeasuredBearingKeys = section(
+        MeasuredBearingKeys,
+        "tables of what was measured, beside which the report states what was computed",
+        last=True,
     )
 
     # --- what follows from the keys

@@ -11,6 +11,7 @@ from asperity.case.body import Rolling
 from asperity.case.chosen_lengths import chosen_lengths, shared_lengths
 from asperity.case.creep import MOST_CREEPAGE, CreepKeys
 from asperity.case.form import section
+from asperity.case.measured_tables import MeasuredKeys
 from asperity.case.ready_lists import NamedChanges
 from asperity.case.rolled_over import RolledOver, TrackKeys
 from asperity.case.sections import DURATION, DURATION_OR_ZERO, ContactKeys, NoiseKeys, NumericsKeys
@@ -119,6 +120,11 @@ class Case(AnyCase):
     numerics: NumericsKeys = section(NumericsKeys, "how finely time, and a track, are resolved", last=True)
     creep: CreepKeys = section(
         CreepKeys, "how what rolls creeps, and, of wheels on a rail, whether they squeal", last=True
+    )
+    measured: MeasuredKeys = section(
+        MeasuredKeys,
+        "tables of what was measured, beside which the report states what was computed",
+        last=True,
     )
 
     if TYPE_CHECKING:  # where a track may be rolled over

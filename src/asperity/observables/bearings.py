@@ -59,16 +59,26 @@ def _of_angle(case: AnyCase) -> tuple[str, ...]:
 
 
 def _collect_velocity(tree: DataTree) -> Collected:
-    velocity = tree[bearing.BAND_VELOCITY.path].isel(law=0, ring_sensor=0)
-    return {"band_velocity": np.asarray(velocity.values)}
+    held = (bearing.BAND_VELOCITY, bearing.BAND_DEVIATION)
+    first = {entry.name: tree[entry.path].isel(law=0, ring_sensor=0) for entry in held}
+    return {name: np.asarray(each.values) for name, each in first.items()}
+
+
+def _in_iso_bands(values: Array, at: Array) -> Array:
+    """Of the band of ISO 15242-2 that holds each frequency; NaN outside of all."""
+    found = np.full(at.shape, np.nan)
+    for value, (low, high) in zip(values, ISO_BANDS, strict=True):
+        found[(at >= low) & (at < high)] = value
+    return found
 
 
 def _velocity(trial: Predictable, measured: Measured) -> Values:
-    """Of the band of ISO 15242-2 that holds each frequency; NaN outside of all."""
-    found = np.full(measured.at.shape, np.nan)
-    for value, (low, high) in zip(trial.collected["band_velocity"], ISO_BANDS, strict=True):
-        found[(measured.at >= low) & (measured.at < high)] = value
-    return found
+    return _in_iso_bands(trial.collected[bearing.BAND_VELOCITY.name], measured.at)
+
+
+def _chance_of_velocity(collected: Collected, measured: Measured) -> Array:
+    """Standard deviation of a velocity by the chance of one record (n,), dB."""
+    return 20.0 / np.log(10.0) * _in_iso_bands(collected[bearing.BAND_DEVIATION.name], measured.at)
 
 
 def _read_velocity(path: Path) -> list[Measured]:
@@ -104,9 +114,9 @@ def _of_load(case: AnyCase) -> tuple[str, ...]:
 
 OBSERVABLES = (
     Observable(TONE, "Hz", "frequency (Hz)", 20.0, 0.01, _no_bearing, _tone, _of_angle,
-               r"\btones? ?\(", _read_tones),
+               r"\btones? ?\(", _read_tones, key="measured.tone"),
     Observable(VELOCITY, "m/s", "frequency (Hz)", 20.0, 1.0, _no_bearing, _velocity, _of_load,
-               r"velocity", _read_velocity, _collect_velocity),
+               r"velocity", _read_velocity, _collect_velocity, "measured.band_velocity", _chance_of_velocity),
     Observable(LINE, "m/s²", "frequency (Hz)", 20.0, 1.0, _no_bearing, _line, _of_load,
-               r"envelope|amplitude.*m/s(\^?2|²)", _read_line, _collect_line),
+               r"envelope|amplitude.*m/s(\^?2|²)", _read_line, _collect_line, "measured.envelope_line"),
 )  # fmt: skip

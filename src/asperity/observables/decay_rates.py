@@ -89,7 +89,8 @@ def rates_beside(case: AnyCase) -> list[Measured]:
 
 OBSERVABLES = (
     Observable(VERTICAL, _UNITS, "frequency (Hz)", 10.0, 1.0, no_track, _vertical, supports,
-               r"vertical.*decay|decay.*vertical|decay rate|dB ?/ ?m\b|15461", _read),
+               r"vertical.*decay|decay.*vertical|decay rate|dB ?/ ?m\b|15461", _read,
+               key="track.decay_rates"),
     Observable(LATERAL, _UNITS, "frequency (Hz)", 10.0, 1.0, no_side, _lateral, _sideways,
-               r"lateral.*decay|decay.*lateral"),
+               r"lateral.*decay|decay.*lateral", key="track.decay_rates"),
 )  # fmt: skip

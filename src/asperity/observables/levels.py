@@ -41,7 +41,20 @@ def _collect(entry: Entry, tree: DataTree) -> Collected:
         levels = levels.sel(radiator="total")
     if "contact" in levels.dims:
         levels = levels.isel(contact=0)
-    return {entry.name: np.asarray(levels.values), f"{entry.name}_band": np.asarray(levels["band"].values)}
+    held = {entry.name: levels}
+    if spectra.LEVEL_DEVIATION.name in (over := tree[spectra.LEVEL_DEVIATION.group]):
+        held[spectra.LEVEL_DEVIATION.name] = over[spectra.LEVEL_DEVIATION.name]
+    found = Collected()
+    for name, each in held.items():
+        found |= {name: np.asarray(each.values), f"{name}_band": np.asarray(each["band"].values)}
+    return found
+
+
+def _chance(collected: Collected, measured: Measured) -> Array:
+    """Standard deviation of a level by the chance of one record (n,), dB; none where it is not known."""
+    if spectra.LEVEL_DEVIATION.name not in collected:
+        return np.zeros(len(measured.at))
+    return levels_in_bands(collected, spectra.LEVEL_DEVIATION.name, measured.at)
 
 
 # --- sound
@@ -136,12 +149,13 @@ def _of_beam(case: AnyCase) -> tuple[str, ...]:
 OBSERVABLES = (
     Observable(FORCE, "dB re 1 N", "frequency (Hz)", 0.0, _BY_CHANCE, _no_rolling, _force, _of_texture,
                r"dB re\.? ?1? ?N\b|force level", lambda path: _read_levels(FORCE, "1 N", path),
-               lambda tree: _collect(spectra.FORCE_LEVEL, tree)),
+               lambda tree: _collect(spectra.FORCE_LEVEL, tree), "measured.force_level", _chance),
     Observable(ACCELERATION, "dB re 1e-6 m/s²", "frequency (Hz)", 0.0, _BY_CHANCE, _no_sensors, _acceleration,
                _of_beam, r"acceleration level|dB re\.? ?[^,;]*m/s(\^?2|²)",
                lambda path: _read_levels(ACCELERATION, "1 um/s^2", path),
-               lambda tree: _collect(schema.ACCELERATION_LEVEL, tree)),
+               lambda tree: _collect(schema.ACCELERATION_LEVEL, tree), "measured.acceleration_level",
+               _chance),
     Observable(SOUND, "dB re 20 µPa", "frequency (Hz)", 0.0, _BY_CHANCE, _no_passage, _sound, _of_sound,
                r"dB ?\(A\)|sound|pass.?by|L_?p|\bdB\b", _read_sound,
-               lambda tree: _collect(schema.SOUND_EXPOSURE_LEVEL, tree)),
+               lambda tree: _collect(schema.SOUND_EXPOSURE_LEVEL, tree), "noise.measured_bands", _chance),
 )  # fmt: skip

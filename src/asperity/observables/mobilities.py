@@ -115,5 +115,5 @@ def mobility_beside(case: AnyCase) -> list[Measured]:
 OBSERVABLES = (
     Observable(MOBILITY, UNITS, "frequency (Hz)", 20.0, 1.0, no_structure, _predict, _free,
                r"mobility|accelerance|inertance|receptance|m/s/N|\(m/s\)/N|m/s\^?2/N|m/s²/N|\bm/N\b",
-               read_mobilities),
+               read_mobilities, key="measured.mobility"),
 )  # fmt: skip

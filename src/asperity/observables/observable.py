@@ -133,6 +133,10 @@ class Observable:
         Reads it from a file with a line for each place of its axis.
     collect : callable, optional
         What is kept for it of the result of a run; without one the case is not run.
+    key : str
+        Key of a case that names a table of it, with its section.
+    chance : callable, optional
+        Standard deviation of each predicted value (n,), dB, by the chance of the record that was computed.
     """
 
     name: str
@@ -146,6 +150,8 @@ class Observable:
     words: str
     read: Callable[[Path], list[Measured]] | None = None
     collect: Callable[[DataTree], Collected] | None = None
+    key: str = ""
+    chance: Callable[[Collected, Measured], Array] | None = None
 
     @property
     def by_run(self) -> bool:

@@ -291,7 +291,25 @@ def _with_neighbours(values: Array, reach: int) -> Array:
 def beside(case: AnyCase) -> list[Measured]:
     """What the case itself says was measured."""
     beside_track = [*decay_rates.rates_beside(case), *mobilities.mobility_beside(case)]
-    return [*beside_track, *levels.sound_beside(case)]
+    return [*beside_track, *levels.sound_beside(case), *tables_beside(case)]
+
+
+MEASURED = "measured"
+"""Section of a case that names tables beside which its report states what was computed."""
+
+
+def tables_beside(case: AnyCase) -> list[Measured]:
+    """What tables hold that this section of a case names; an `InputError` tells what it cannot have."""
+    found = []
+    section = getattr(case, MEASURED, None)
+    for of in BUILT_IN.values():
+        title, _, name = of.key.partition(".")
+        path = getattr(section, name, None) if title == MEASURED else None
+        if path is not None:
+            if lacks := of.lacks(case):
+                raise InputError(of.key, f"a case with {lacks}", "what the case can predict")
+            found += read_measured(case, path, {}, of.name)[0]
+    return found
 
 
 def read_where(words: Iterable[str]) -> dict[str, str]:

@@ -49,5 +49,6 @@ def _free(case: AnyCase) -> tuple[str, ...]:
 
 OBSERVABLES = (
     Observable(STIFFNESS, "N/m", "load (N)", 20.0, 0.5, _no_contact, _predict, _free,
-               r"load.*stiffness|stiffness.*load", _read, _collect),
+               r"load.*stiffness|stiffness.*load", _read, _collect,
+               "measured.contact_stiffness"),
 )  # fmt: skip

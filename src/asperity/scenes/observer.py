@@ -23,12 +23,13 @@ from asperity.schema import (
     contact,
     convergence,
     declared,
+    measured,
     provenance,
     rolling,
     spectra,
 )
 
-DECLARING = (bearing, contact, convergence, provenance, rolling, spectra, schema)
+DECLARING = (bearing, contact, convergence, measured, provenance, rolling, spectra, schema)
 """Modules that declare what results hold."""
 QUANTITIES = {
     "contact_force": "forces of all contacts in time (contacts, steps), N",

@@ -65,6 +65,12 @@ CHAPTERS = (
     Chapter("motion", "Motion of the bodies", (motion.body_acceleration,)),
     Chapter("force", "Contact force", force.FORCE, (tables.loss_table,), headline.force_answers),
     Chapter("contacts", "All contacts", (force.contact_levels,), (force.contacts_table,)),
+    Chapter(
+        "measured",
+        "Measured against computed",
+        (measured.beside_measured,),
+        (measured.beside_table,),
+    ),
     Chapter("setup", "Scene", (scene.scene,)),
     Chapter(
         "texture",

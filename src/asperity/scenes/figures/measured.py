@@ -1,19 +1,23 @@
 """What a result is held against: figures and tables of what was measured, and of the limits of TSI Noise."""
 
 from collections.abc import Iterator
+from itertools import cycle
 from typing import Any
 
 import numpy as np
 from xarray import DataTree
 
+from asperity.arguments import NDArray
 from asperity.reference.railways import PassByLimit
 from asperity.reporting import chart, data, figure, panels, tables
 from asperity.reporting.tables import Cell, ReportTable, table, text_cells
 from asperity.scenes import schema
 from asperity.scenes.figures.sources import WHOLE, Sources, decides, main_sources
 from asperity.schema import Entry, spectra
-from asperity.spectra import a_weighting
-from asperity.written_numbers import capital, count_of
+from asperity.schema import measured as beside
+from asperity.spectra import a_weighting, nominal_frequency
+from asperity.units import unit_in_brackets
+from asperity.written_numbers import capital, count_of, rounded
 
 MEASURED = "measured, in one-third octaves"
 _LOOK: tuple[Any, ...] = (chart.INK, (), 2.0)
@@ -103,21 +107,28 @@ TWICE = 1.96
 """Standard deviations in half a 95 % interval."""
 
 
+NEXT = "Next: asperity fit CASE, which fits keys of the case to it."
+
+
 def _deviation(apart: chart.Numbers, deviation: chart.Numbers) -> str:
     """Say how far measured bands are from computed ones (n,), dB, and what to do where that is too far.
 
     With the standard deviation of each difference, dB.
     """
-    known = np.isfinite(apart)
-    if not known.any():
+    if not np.isfinite(apart).any():
         return ""
+    told, outside = _how_far(apart, deviation, "band")
+    return f"Measured over computed: {told}. {NEXT}" if outside else f"Measured over computed: {told}."
+
+
+def _how_far(apart: chart.Numbers, deviation: chart.Numbers, of: str) -> tuple[str, int]:
+    """Say how far measured values (n,), dB, are from computed ones, and how many are too far."""
+    known = np.isfinite(apart)
     outside = int(np.sum(np.abs(apart[known]) > TWICE * deviation[known]))
     rms = float(np.sqrt(np.mean(apart[known] ** 2)))
-    told = (
-        f"Measured over computed: {rms:.1f} dB rms in {count_of(int(known.sum()), 'band')}, "
-        f"{outside} of them beyond 95 % of what measuring and chance explain"
-    )
-    return f"{told}. Next: asperity fit CASE, which fits keys of the case to it." if outside else f"{told}."
+    values = count_of(int(known.sum()), of)
+    told = f"{rms:.1f} dB rms in {values}, {outside} of them beyond 95 % of what measuring and chance explain"
+    return told, outside
 
 
 # --- beside the track
@@ -193,6 +204,124 @@ def pass_by_bands(tree: DataTree, lines: figure.Lines) -> Iterator[chart.Panel |
         "the main law, all of it and by what radiates."
     )
     yield data.missing(tree, schema.MEASURED_BAND_LEVEL)
+
+
+# --- whatever a case names as measured
+
+
+def _values_over(entry: Entry) -> figure.Columns:
+    """Columns of what stands over frequency, one of each quantity, at all frequencies of them."""
+
+    def columns(tree: DataTree) -> Iterator[figure.Series]:
+        at = _frequencies(tree)
+        names = _words(tree, beside.QUANTITY)
+        over, found = data.values(tree, beside.AT), data.values(tree, entry)
+        for name in dict.fromkeys(names[_over_frequency(tree)].tolist()):
+            own = names == name
+            values = np.full(len(at), np.nan)
+            values[np.searchsorted(at, over[own])] = found[own]
+            if np.isfinite(values).any():
+                yield figure.Series(f"{name}, {_NAMES[entry]}", entry.units, values, entry, name)
+
+    return columns
+
+
+_NAMES = {beside.DEVIATION: "measured over computed", beside.UNCERTAINTY: "standard deviation"}
+
+
+def _over_frequency(tree: DataTree) -> chart.Flags:
+    return np.array(["Hz" in axis for axis in _words(tree, beside.AXIS)], dtype=bool)
+
+
+def _words(tree: DataTree, entry: Entry) -> NDArray[np.str_]:
+    return data.variable_of(tree, entry).values.astype(str)
+
+
+def _frequencies(tree: DataTree) -> chart.Numbers:
+    """All at which something was measured, rising, Hz."""
+    return np.unique(data.values(tree, beside.AT)[_over_frequency(tree)])
+
+
+def _at_frequencies(tree: DataTree) -> Iterator[figure.Series]:
+    yield figure.Series("frequency", "Hz", _frequencies(tree), beside.AT, "frequency")
+
+
+_MARKED = ((chart.VERMILLION, "o"), (chart.BLUE, "s"), (chart.GREEN, "^"), (chart.INK, "D"))
+
+
+@figure.figure(
+    "Measured over computed",
+    _at_frequencies,
+    _values_over(beside.DEVIATION),
+    _values_over(beside.UNCERTAINTY),
+)
+def beside_measured(tree: DataTree, lines: figure.Lines) -> Iterator[chart.Panel | str]:
+    """How far each quantity is off over frequency, and how far measuring and chance explain that."""
+    apart = lines.of(beside.DEVIATION)
+    deviations = lines.of(beside.UNCERTAINTY)
+    if not apart:
+        return
+    at = lines.at
+    marks: list[chart.Mark] = [panels.zero()]
+    reach = []
+    for (colour, marker), own, sure in zip(cycle(_MARKED), apart, deviations, strict=False):
+        known = np.isfinite(own.values)
+        wide = TWICE * sure.values[known]
+        marks.append(chart.Area(at[known], -wide, wide, colour=colour, opacity=0.12))
+        marks.append(chart.Line(at[known], own.values[known], own.label, colour, (), 1.3, marker))
+        reach += [own.values[known], wide, -wide]
+    axis = panels.levels_axis("measured over computed / dB", reach, step=5.0)
+    ends = at[0] / panels.EDGE**2, at[-1] * panels.EDGE**2
+    yield chart.Panel(panels.frequency_axis(*ends), axis, tuple(marks))
+    yield (
+        "By the main law. Shaded: what 95 % of measuring and of the chance of the record that was computed "
+        "explain."
+    )
+
+
+def beside_table(tree: DataTree) -> ReportTable | None:
+    """All that the case names as measured, beside what was computed, and how far chance explains the rest."""
+    if not data.present(tree, beside.DEVIATION):
+        return None
+    words = (beside.QUANTITY, beside.AXIS, beside.UNITS)
+    names, axes, units = (_words(tree, each) for each in words)
+    apart = data.values(tree, beside.DEVIATION)
+    deviation = data.values(tree, beside.UNCERTAINTY)
+    places = zip(data.values(tree, beside.AT).tolist(), axes.tolist(), strict=True)
+
+    def in_units(entry: Entry) -> Iterator[str]:
+        """Values with their units; of levels a tenth of a decibel."""
+        for value, unit in zip(data.values(tree, entry).tolist(), units.tolist(), strict=True):
+            number = f"{round(value, 1) + 0.0:.1f}" if unit.startswith("dB re") else rounded(value, 3)
+            yield f"{number.replace('-', '−')} {unit}" if np.isfinite(value) else "–"
+
+    columns = {
+        "quantity": text_cells(names),
+        "at": text_cells(_place(at, unit_in_brackets(axis)) for at, axis in places),
+        "measured": text_cells(in_units(beside.VALUE)),
+        "computed": text_cells(in_units(beside.COMPUTED)),
+        "measured over computed / dB": tables.change_cells(apart, np.abs(apart) <= TWICE * deviation),
+        "95 % / dB": tables.number_cells(TWICE * deviation, "± {:.1f}"),
+    }
+    told = list[str]()
+    off = 0
+    for name in dict.fromkeys(names[np.isfinite(apart)].tolist()):
+        how_far, outside = _how_far(apart[names == name], deviation[names == name], "value")
+        told.append(f"{capital(name)}: {how_far}.")
+        off += outside
+    note = (
+        "By the main law. Uncertainty: that of repeats, else the usual one of the quantity, and the chance "
+        "of the record that was computed. In brackets: differences that these explain."
+    )
+    return table(
+        "beside_measured", "Measured against computed", columns, " ".join([note, *told, *[NEXT] * (off > 0)])
+    )
+
+
+def _place(at: float, unit: str) -> str:
+    """Where something was measured; a third octave by its nominal frequency."""
+    is_band = unit == "Hz" and abs(10.0 * np.log10(at) - round(10.0 * np.log10(at))) < 1e-6
+    return nominal_frequency(at) if is_band else f"{rounded(at, 4)} {unit}"
 
 
 # --- limits of TSI Noise
