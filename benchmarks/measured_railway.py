@@ -18,7 +18,7 @@ import argparse
 import csv
 import json
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from pathlib import Path
 
@@ -792,8 +792,10 @@ SECTION_FORMS = {
     "head and foot, web bends": {},
     "and a third stiffer": {"stiffer": 1.3},
     "and hammered on the side of the head": {"place": SIDE},
+    "sideways.web_thickness of the package": {"web_thickness": railway_web.THICKNESS},
+    "and that hammered on the side of the head": {"web_thickness": railway_web.THICKNESS, "place": SIDE},
 }
-KEEPS, BENDS_WEB, STRUCK = (tuple(SECTION_FORMS)[k] for k in (0, 2, 4))
+KEEPS, BENDS_WEB, STRUCK, OWN_WEB, OWN_STRUCK = (tuple(SECTION_FORMS)[k] for k in (0, 2, 4, 5, 6))
 UP_TO_2_KHZ = 14
 """Bands."""
 
@@ -804,9 +806,26 @@ def rates_of_form(keys, form):
     if told is None:
         return lateral_rates(keys)
     frequency = lines_of_bands()
-    moved = railway_web.head_over_distance(sideways_track(keys), frequency.ravel(), DISTANCES, **told)
+    own = own_web if "web_thickness" in told else railway_web.head_over_distance
+    moved = own(sideways_track(keys), frequency.ravel(), DISTANCES, **told)
     lengths = 1.0 / decay_rate_of_responses(DISTANCES, np.abs(moved)).reshape(frequency.shape)
     return 1.0 / lengths.mean(axis=1)
+
+
+def own_web(track, frequency, distances, web_thickness, place=railway_web.TOP):
+    """As `railway_web.head_over_distance`, of the package's own rail whose web bends."""
+    rail = replace(track, web_thickness=web_thickness)
+    waves = rail.waves(2.0 * np.pi * frequency)
+    _, head = rail.contact_shapes(0.0)
+    head[1] += place - railway_web.TOP
+    sent = waves.coefficients * np.tensordot(head, waves.incoming(0.3), 1)
+    found = []
+    for distance in np.asarray(distances) + 0.3:
+        bays = np.floor(distance / waves.spacing + 1e-9)
+        inside = max(distance - bays * waves.spacing, 0.0)
+        heard = np.tensordot(head, waves.outgoing(inside), 1)
+        found.append(np.sum(heard * sent * waves.multipliers**bays, axis=0))
+    return np.array(found)
 
 
 @cache
@@ -845,7 +864,7 @@ def web_at(found):
 def web_sections(found):
     """All sections sideways: 1.25 kHz over measured and rms of all bands, by form of the section."""
     at, rows = int(np.argmin(np.abs(CENTRES - 1250.0))), []
-    forms = KEEPS, BENDS_WEB, STRUCK
+    forms = KEEPS, BENDS_WEB, STRUCK, OWN_WEB, OWN_STRUCK
     for section in SECTIONS:
         offs = [fit_of_form(found.railway, section, form, len(CENTRES))[1] for form in forms]
         sides = level(found.railway.rates(section, "lateral", "2012", "none"))

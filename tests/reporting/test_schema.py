@@ -63,7 +63,8 @@ def test_attributes_are_those_of_the_schema(real_run):
 ON_TRACK = "over a track", "of a wheel", "rail is rough", "loss factors"
 NOWHERE = (
     "calls them nothing else", "of several contacts", "contacts at equal distances", "measured on the track",
-    "passage was measured", "names tables", "says what passes", "disc and tread vibrate", "bays differ", "[creep] gives",
+    "passage was measured", "names tables", "says what passes", "disc and tread vibrate", "bays differ",
+    "[creep] gives",
 )  # fmt: skip
 OTHERS = {
     "ball-on-beam": (*NOWHERE, *ON_TRACK, "train"),
