@@ -26,13 +26,13 @@ from asperity.scenarios.prepared_bearing import (
     bearing_parts,
     prepare_bearing,
 )
-from asperity.scenes import schema
 from asperity.scenes.bearing_validity import bearing_findings
-from asperity.scenes.computed_bearing import compute_bearing
+from asperity.scenes.computed_bearing import ComputedBearing, compute_bearing
 from asperity.scenes.observer import observed
 from asperity.scenes.observers import OF_BEARINGS
+from asperity.scenes.records import recorded_group
 from asperity.scenes.result import root_attributes, scenario_group
-from asperity.schema import Values, bearing, contact, rolling, spectra, tree
+from asperity.schema import Values, bearing, contact, spectra, tree
 from asperity.structures.ball_bearing import PARTS, Kinematics
 from asperity.structures.bearing_statics import LoadedBearing
 from asperity.written_numbers import rounded
@@ -74,14 +74,15 @@ def bearing_result(
     heard = heard_group(case, computed.runs)
     apart = Values() if brief else alone(prepared, progress)
     runs = {name: steady_where_still(run) for name, run in computed.runs.items()}
-    seen = observed(replace(computed, runs=runs), OF_BEARINGS)
+    computed = replace(computed, runs=runs)
+    seen = observed(computed, OF_BEARINGS)
     found = list(bearing_findings(case, runs)) + seen.findings
     warn_of_findings(found)
     numerics = (*_numerics(case, time.monotonic() - began), *seen.numerics)
     scenario = scenario_group(case, numerics)
     scenario[contact.VALIDITY] = [finding.row() for finding in found]
     at_rest = static_group(case.static, case.kinematics)
-    laid_out = scenario | at_rest | motion_group(case, runs) | heard | seen.values | apart
+    laid_out = scenario | at_rest | motion_group(computed) | heard | seen.values | apart
     result = bearing.with_ring_forces(tree(laid_out))
     result.attrs = root_attributes(
         case,
@@ -147,31 +148,21 @@ def tones_group(turning: Kinematics) -> Values:
 # --- in time
 
 
-def motion_group(case: BearingUnderLoad, runs: dict[str, RolledBearing]) -> Values:
+def motion_group(computed: ComputedBearing) -> Values:
     """Lay out what was recorded in time, at the sampling rate of the case."""
-    (first, *_), balls = runs.values(), np.arange(case.bearing.bearing.balls)
-
-    def stacked(name: str) -> Array:
-        return np.stack([getattr(run, name) for run in runs.values()])
-
-    return {
-        rolling.LAW: list(runs),
-        rolling.TIME: first.time,
+    balls = np.arange(computed.bearing.balls)
+    stacked = computed.stacked
+    return recorded_group(computed) | {
         bearing.ROLLING_BALL: 1 + balls,
         bearing.ROLLING_RING: list(RINGS),
         bearing.ROLLING_DIRECTION: list(DIRECTIONS),
-        bearing.ROLLING_SENSOR: case.sensors,
-        bearing.BALL_AZIMUTH: first.cage + 2.0 * np.pi / len(balls) * balls[:, None],
-        rolling.CONTACT: 1 + np.arange(len(RINGS) * len(balls)),
+        bearing.ROLLING_SENSOR: computed.case.sensors,
+        bearing.BALL_AZIMUTH: computed.first.cage + 2.0 * np.pi / len(balls) * balls[:, None],
         bearing.CONTACT_RING: np.repeat(RINGS, len(balls)),
         bearing.CONTACT_BALL: 1 + np.tile(balls, len(RINGS)),
-        rolling.CONTACT_FORCE: stacked("contact_force"),
         bearing.BALL_MOTION: stacked("ball_motion"),
         bearing.RING_MOTION: np.stack([stacked(f"{ring}_motion") for ring in RINGS], axis=1),
         bearing.RING_ACCELERATION: stacked("acceleration"),
-        schema.ENERGY_TERM: list(first.energy.shares),
-        schema.ENERGY: [list(run.energy.shares.values()) for run in runs.values()],
-        schema.ENERGY_RESIDUAL: [run.energy.residual for run in runs.values()],
     }
 
 

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from asperity import __version__
-from asperity.arguments import Array, NDArray
+from asperity.arguments import Array
 from asperity.case.any_case import AnyCase
 from asperity.case.form import content, file_digest
 from asperity.case.scene import Case
@@ -25,8 +25,8 @@ from asperity.scenarios.running_in import run_in_case
 from asperity.scenarios.scanned_states import within_scan
 from asperity.scenarios.scene import PreparedCase, Scene
 from asperity.scenarios.textures import other_contacts, recorded_time
+from asperity.scenes.records import RecordedRuns
 from asperity.schema import Values
-from asperity.spectra import band_levels, psd, spectrum_segment
 from asperity.store import Checkpoint, Store, content_key
 from asperity.structures.modal import Modal
 from asperity.structures.moving_kernel import moving_kernel
@@ -45,7 +45,7 @@ TOLD_OF = ("laws", "noise")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Computed(ReducedCase):
+class Computed(ReducedCase, RecordedRuns):
     """Everything that was computed for a case, before it is laid out as a result: its textures as run in."""
 
     over: Modal | RailBetween | None  # what was rolled over, as it was carried on in time
@@ -78,11 +78,6 @@ class Computed(ReducedCase):
         return working_point(self.case.contact, self.shape, self.reduction)[1]
 
     @property
-    def first(self) -> RolledBodies:
-        """The run by the main law."""
-        return next(iter(self.runs.values()))
-
-    @property
     def track(self) -> Track:
         """What is rolled over, of cases that roll over a track."""
         assert isinstance(self.scene.over, Track)
@@ -99,59 +94,10 @@ class Computed(ReducedCase):
         assert isinstance(self.over, RailBetween)
         return self.over
 
-    def stacked(self, name: str) -> Array:
-        """Stack one record of all runs, (laws, contacts or sensors, ...), by the name of its attribute."""
-        return np.stack([getattr(run, name) for run in self.runs.values()])
-
-    # over frequency: all records in segments of one length, which make the lines of all spectra
-
-    @cached_property
-    def segment(self) -> int:
-        """Length of these segments, in time steps."""
-        return spectrum_segment(len(self.first.time), self.case.time_step)
-
-    def psd(self, signals: Array) -> Array:
-        """One-sided PSDs (..., f) of records (..., n), on all lines from zero; none of what does not vary."""
-        found = psd(signals, self.case.time_step, segment=self.segment)[1]
-        return np.where(np.ptp(signals, axis=-1, keepdims=True) > 0.0, found, 0.0)
-
-    @cached_property
-    def frequency(self) -> Array:
-        """All lines (f,), from zero, Hz."""
-        return np.asarray(np.fft.rfftfreq(self.segment, self.case.time_step), dtype=np.float64)
-
-    @cached_property
-    def shown(self) -> NDArray[np.bool_]:
-        """Which lines a result holds: up to the edge of the one-third octave of the highest frequency."""
-        return np.asarray(
-            (self.frequency > 0.0) & (self.frequency <= 1.13 * self.case.numerics.highest_frequency)
-        )
-
-    def levels(self, density: Array, reference: float = 1.0) -> Array:
-        """One-third-octave levels (..., b), dB, of PSDs on all lines."""
-        highest = self.case.numerics.highest_frequency
-        return band_levels(self.frequency, density, reference, high=highest)[1]
-
-    @cached_property
-    def force_psd(self) -> Array:
-        """PSDs of the forces of all contacts (laws, c, f), N²/Hz, on all lines."""
-        return self.psd(self.stacked("contact_force"))
-
-    @cached_property
-    def force_levels(self) -> Array:
-        """Levels of the forces of all contacts (laws, c, b), dB re 1 N."""
-        return self.levels(self.force_psd)
-
     @cached_property
     def bare_levels(self) -> Array | None:
         """Levels of the forces by the bare linear law (c, b), dB re 1 N; None where it was not rolled."""
         return None if self.bare_force is None else self.levels(self.psd(self.bare_force))
-
-    @cached_property
-    def band(self) -> Array:
-        """Centres of the one-third octaves (b,), Hz."""
-        highest = self.case.numerics.highest_frequency
-        return band_levels(self.frequency, self.force_psd, high=highest)[0]
 
 
 def compute(prepared: PreparedCase, progress: Progress) -> Computed:

@@ -18,6 +18,7 @@ from asperity.scenarios.prepared_bearing import RINGS, PreparedBearing, raceways
 from asperity.scenarios.raceway_laws import OnRaceway, ball_heights, laws_on
 from asperity.scenarios.scanned_states import within_scan
 from asperity.scenes.compute import checkpoint_of
+from asperity.scenes.records import RecordedRuns
 from asperity.speeds import SpeedCourse
 from asperity.store import Store
 from asperity.structures.ball_bearing import BallBearing
@@ -34,7 +35,7 @@ SIGNALS = (*FORCES, "ball_motion", "inner_motion", "outer_motion", "acceleration
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class ComputedBearing(PreparedBearing):
+class ComputedBearing(PreparedBearing, RecordedRuns):
     """A bearing that was run by its laws, before it is laid out as a result."""
 
     runs: dict[str, RolledBearing]  # records, by law, at the sampling rate of the case
@@ -49,10 +50,6 @@ class ComputedBearing(PreparedBearing):
         """Which of `asperity.scenes.observer.QUANTITIES` it has."""
         sensed = {"acceleration"} if self.case.sensors else set()
         return frozenset({"contact_force", "bearing"} | sensed)
-
-    def stacked(self, name: str) -> Array:
-        """Stack one record of all runs, (laws, balls, contacts or sensors, ...), by its attribute."""
-        return np.stack([getattr(run, name) for run in self.runs.values()])
 
 
 def compute_bearing(prepared: PreparedBearing, progress: Progress) -> ComputedBearing:

@@ -6,7 +6,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from datetime import UTC, datetime
 from typing import Any
 
-import numpy as np
 import xarray
 
 from asperity import __version__, laws
@@ -23,6 +22,7 @@ from asperity.scenes.observer import observed
 from asperity.scenes.observers import OVER_STRUCTURES
 from asperity.scenes.over_frequency import body_motion, spectra_group
 from asperity.scenes.population import answers
+from asperity.scenes.records import recorded_group
 from asperity.schema import VERSION, Values, group, provenance, rolling, spectra, tree
 from asperity.structures.rail_poles import RailBetween, RailPoles
 from asperity.written_numbers import rounded
@@ -177,17 +177,12 @@ def rolling_group(computed: Computed) -> Values:
     scene = computed.scene
     stack = computed.stacked
     first = computed.first
-    runs = computed.runs.values()
-    lost = [[duration for _, duration in run.flights] for run in runs]
+    lost = [[duration for _, duration in run.flights] for run in computed.runs.values()]
     over, rolls = (getattr(schema, name.upper()) for name in case.DISPLACEMENTS)
-    laid_out: Values = {
-        rolling.LAW: list(computed.runs),
-        rolling.TIME: first.time,
+    laid_out: Values = recorded_group(computed) | {
         rolling.POSITION: first.positions[0],
-        rolling.CONTACT: 1 + np.arange(len(scene.offsets)),
         rolling.OFFSET: scene.offsets,
         rolling.STATIC_LOAD: scene.loads,
-        rolling.CONTACT_FORCE: stack("contact_force"),
         rolling.RELATIVE_DISPLACEMENT: stack("relative_displacement"),
         over: stack("over_displacement"),
         rolls: stack("rolling_displacement"),
@@ -196,9 +191,6 @@ def rolling_group(computed: Computed) -> Values:
         rolling.LONGEST_LOSS: [[durations.max(initial=0.0) for durations in run] for run in lost],
         schema.ROLLING_DEGREE: list(scene.degrees),
         schema.BODY_DISPLACEMENT: body_motion(computed),
-        schema.ENERGY_TERM: list(first.energy.shares),
-        schema.ENERGY: [list(run.energy.shares.values()) for run in runs],
-        schema.ENERGY_RESIDUAL: [run.energy.residual for run in runs],
         rolling.SPEED: float(case.speed),
     }
     if sensors := case.rolled_over.sensor_positions:
