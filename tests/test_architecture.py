@@ -117,7 +117,7 @@ def test_a_result_names_none_of_its_observers():
 
 
 KINDS = {
-    "Case": ("case/", "fitting/observables/levels", "fitting/observables/stiffness"),
+    "Case": ("case/", "observables/levels", "observables/stiffness"),
     "BearingUnderLoad": ("bearing", "studies/signals"),
     **dict.fromkeys(("PreparedCase", "Computed", "Optimised"), ()),
     **dict.fromkeys(("PreparedBearing", "ComputedBearing", "OptimisedBearing"), ()),
