@@ -84,8 +84,8 @@ def plausible(entry):
 @pytest.mark.parametrize("kind", PRESETS)
 def test_every_number_has_limits_and_beyond_them_is_told_why(kind):
     base = {"surface": {"smooth": True} if kind == "wheel-on-rail" else {"rms": "0.3 um"}}
-    if kind == "ball-bearing":
-        base = {"bearing": {"name": "6205"}}
+    if kind in ("ball-bearing", "roller-bearing"):
+        base = {"bearing": {"name": "6205" if kind == "ball-bearing" else "NU205"}}
     for entry in entries(case_class(kind)):
         if not isinstance(entry.key.one, Quantity | Number):
             continue

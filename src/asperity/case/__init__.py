@@ -7,6 +7,7 @@ PRESETS: dict[str, str] = {
     "wheel-on-rail": "asperity.case.bodies.WheelOnRail",
     "bodies": "asperity.case.bodies.Bodies",
     "ball-bearing": "asperity.case.ball_bearing.BearingUnderLoad",
+    "roller-bearing": "asperity.case.roller_bearing.RollerBearingUnderLoad",
 }
 """Kinds of case by name, each with its module and class."""
 

@@ -197,6 +197,23 @@ class SlicedContact:
         """
         return float(self.pressed(approach).stiffness[0, 0])
 
+    def semi_axes(self, approach: float) -> tuple[float, float]:
+        """Half width of the contact and half the length that touches, without tilt at an approach, m.
+
+        Parameters
+        ----------
+        approach : float
+            m.
+
+        Returns
+        -------
+        along, across : float
+            Along the path b = 2pR/E* of the largest pressure, and across it, m; zero while apart.
+        """
+        touching = np.count_nonzero(self.pressed(approach).loads) / self.slices
+        half_width = 2.0 * self.peak_pressure(approach) * self.radius / self.modulus
+        return half_width, 0.5 * self.length * touching
+
     def pressures(self, loads: ArrayLike) -> Array:
         """Pressures of Hertz on the middle line of slices.
 

@@ -18,9 +18,9 @@ from asperity.rolling.soundness import STILL, steady
 from asperity.rolling.trajectory import Trajectory, Values, at_steps
 from asperity.speeds import SpeedCourse
 from asperity.store import Checkpoint
-from asperity.structures.ball_bearing import BallBearing
 from asperity.structures.body import Body
 from asperity.structures.ring import Around, Direction, Ring
+from asperity.structures.roller_bearing import AnyBearing
 from asperity.written_numbers import count_of
 
 RINGS = ("inner", "outer")
@@ -115,7 +115,7 @@ def steady_where_still(run: RolledBearing) -> RolledBearing:
 
 
 def roll_bearing(
-    bearing: BallBearing,
+    bearing: AnyBearing,
     rings: BearingRings,
     inner_law: Law | Sequence[Law],
     outer_law: Law | Sequence[Law],
@@ -144,7 +144,7 @@ def roll_bearing(
 
     Parameters
     ----------
-    bearing : BallBearing
+    bearing : BallBearing or RollerBearing
         Its geometry and speeds.
     rings : BearingRings
         At least one of them must be held, radially, and axially where contacts carry an axial load.
@@ -230,7 +230,7 @@ class _Turning:
     which that turns as far.
     """
 
-    bearing: BallBearing
+    bearing: AnyBearing
     rings: BearingRings
     speed: float
     time_step: float
@@ -311,7 +311,7 @@ class _Turning:
         sine = math.sin(self.contact_angle)
         overlap = max(-self.bearing.apart(self.contact_angle), 0.0)
         shared = (5.0 * radial + (axial / sine if sine else 0.0)) / self.bearing.balls
-        return shared + float(self.bearing.series_stiffness * overlap**1.5)
+        return shared + self.bearing.interference_force(overlap)
 
     def mechanism(
         self,
@@ -411,7 +411,7 @@ def _heights(line: ArrayLike | None, spots: Values, raised: float) -> Values:
     return lambda steps: np.asarray(spline(spots(steps))) + raised
 
 
-def _row_of(mechanism: Mechanism, rings: BearingRings, bearing: BallBearing, sensor: Sensor) -> Array:
+def _row_of(mechanism: Mechanism, rings: BearingRings, bearing: AnyBearing, sensor: Sensor) -> Array:
     name, angle, direction = sensor
     require(name in RINGS, "ring of a sensor", name, '"inner" or "outer"')
     ring = RINGS.index(name)

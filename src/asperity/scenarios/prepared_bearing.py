@@ -16,8 +16,9 @@ from asperity.progress import Progress
 from asperity.scenarios import compiling, preparing, reducing, run_time
 from asperity.scenarios.doubts import doubt_bearing
 from asperity.scenarios.problems import refuse
-from asperity.scenarios.raceway_laws import OnRaceway, raceway_on
+from asperity.scenarios.raceway_laws import OnRaceway
 from asperity.scenarios.raceway_limits import doubt_fault, doubt_surface
+from asperity.scenarios.roller_raceways import on_surface, surface_on
 from asperity.speeds import slowest
 from asperity.store import Store
 from asperity.structures.ball_bearing import PARTS
@@ -88,7 +89,7 @@ def prepare_bearing(case: BearingUnderLoad, source: str = "case") -> PreparedBea
             faults = [each.fault for each in on_it if each.fault]
             seed = SEEDS * case.seed + number
             try:
-                made.append(raceway_on(contact, load, radius, keys.texture(), faults, seed=seed))
+                made.append(surface_on(contact, load, radius, keys.texture(), faults, seed=seed))
                 doubt_surface(made[-1], contact.approach(load))
             except InputError as error:
                 errors.append(_by_key(case, name, keys, error))
@@ -122,8 +123,9 @@ def raceways_of(prepared: PreparedBearing, progress: Progress | None) -> list[On
     share = slowest(case.speed) / case.speed
     each = zip(case.contacts, prepared.raceways, of.raceway_radii, passing, strict=True)
     return [
-        OnRaceway(
-            smooth, surface, load, case.contact_damping, of.hardness, cache=Store(), progress=progress,
+        on_surface(
+            smooth, surface, load, damping=case.contact_damping, hardness=of.hardness,
+            cache=Store(), progress=progress,
             shortest=radius * share * pace / case.highest_frequency,
             parameters={law: case.law_parameters(law) for law in case.laws},
         )
@@ -198,5 +200,5 @@ def _cells_over_faults(prepared: PreparedBearing) -> float:
     for number, surface in enumerate((*prepared.raceways, *prepared.balls)):
         contact, load = case.contacts[min(number, 1)]
         times = 2 if by_height or number >= len(RINGS) else 1
-        found += times * OnRaceway(contact, surface, load).cells_over_faults
+        found += times * on_surface(contact, surface, load).cells_over_faults
     return found

@@ -15,7 +15,8 @@ from asperity.laws import Need, spec_of
 from asperity.progress import Progress
 from asperity.rolling.bearing import BearingRings, RolledBearing, Sensor, roll_bearing
 from asperity.scenarios.prepared_bearing import RINGS, PreparedBearing, raceways_of
-from asperity.scenarios.raceway_laws import OnRaceway, ball_heights, laws_on
+from asperity.scenarios.raceway_laws import OnRaceway, laws_on
+from asperity.scenarios.roller_raceways import felt_by
 from asperity.scenarios.scanned_states import within_scan
 from asperity.scenes.compute import checkpoint_of
 from asperity.scenes.records import RecordedRuns
@@ -62,7 +63,7 @@ def compute_bearing(prepared: PreparedBearing, progress: Progress) -> ComputedBe
         for ring, on in zip(RINGS, ons, strict=True)
     ]
     smooth, load = case.contacts[1]
-    averaged = [ball_heights(smooth, surface, load) for surface in prepared.balls]
+    averaged = [felt_by(smooth, surface, load) for surface in prepared.balls]
     sensors: list[Sensor] = [("outer", angle, "radial") for angle in case.sensors]
 
     def surfaces() -> list[Array]:

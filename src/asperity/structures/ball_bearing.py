@@ -249,6 +249,10 @@ class BallBearing:
         both = (self.inner_contact, self.outer_contact)
         return float(sum(each.stiffness_constant ** (-2.0 / 3.0) for each in both) ** -1.5)
 
+    def interference_force(self, overlap: float) -> float:
+        """Force of a ball between rings that overlap along its normal, m; N."""
+        return float(self.series_stiffness * overlap**1.5)
+
     @property
     def fastest(self) -> float:
         """Speed, turns per second, beyond which hardly any bearing of this size runs (`FASTEST`), Hz."""

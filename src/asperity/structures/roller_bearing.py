@@ -13,7 +13,7 @@ from asperity.contact.hertz import relative_radius
 from asperity.contact.slices import FEWEST, SLICES, SlicedContact
 from asperity.parameters import Choice, MaterialOrName, Number, Quantity, checked_parameters, parameter
 from asperity.reference.materials import MATERIALS, Material, contact_modulus
-from asperity.structures.ball_bearing import FASTEST, HARDNESS, Kinematics
+from asperity.structures.ball_bearing import FASTEST, HARDNESS, BallBearing, Kinematics
 from asperity.written_numbers import rounded
 
 if TYPE_CHECKING:
@@ -228,13 +228,59 @@ class RollerBearing:
         cage = 2.0 * math.pi * self.kinematics(speed).cage
         return 0.5 * self.roller_mass * self.pitch_diameter * cage**2
 
-    def kinematics(self, speed: float, *, slip: float = 0.0) -> Kinematics:
+    def interference_force(self, overlap: float) -> float:
+        """Force of a roller between raceways that overlap along its normal, m; N."""
+        return self.inner_contact.force(0.5 * overlap)
+
+    # --- by the names that whatever rolls in a bearing has
+
+    @property
+    def balls(self) -> int:
+        """Number of rollers."""
+        return self.rollers
+
+    @property
+    def ball_diameter(self) -> float:
+        """Diameter of a roller, m."""
+        return self.roller_diameter
+
+    @property
+    def ball_mass(self) -> float:
+        """Mass of a roller, kg."""
+        return self.roller_mass
+
+    @property
+    def free_angle(self) -> float:
+        """Contact angle, rad: that of the raceways."""
+        return self.contact_angle
+
+    @property
+    def radial_clearance(self) -> float:
+        """Diametral clearance, m."""
+        return self.clearance
+
+    @property
+    def preload(self) -> float:
+        """Constant axial force, N: none."""
+        return 0.0
+
+    def apart(self, contact_angle: float) -> float:
+        """Gap of both contacts of a roller, rings centred, along their normal at an angle, rad; m."""
+        return 0.5 * self.clearance * math.cos(contact_angle)
+
+    # --- what turns how fast
+
+    def kinematics(
+        self, speed: float, *, contact_angle: float | None = None, slip: float = 0.0
+    ) -> Kinematics:
         """How fast everything turns where rollers roll without sliding, but for a slip of the cage.
 
         Parameters
         ----------
         speed : float
             Of the ring that turns, turns per second.
+        contact_angle : float, optional
+            Rad; that of the raceways by default.
         slip : float
             Share by which the cage is slower than in pure rolling.
 
@@ -244,8 +290,8 @@ class RollerBearing:
             Frequencies, Hz: those of balls there are those of rollers.
         """
         diameters = self.roller_diameter, self.pitch_diameter
-        angle, turning = self.contact_angle, self.turning
-        return Kinematics.rolling(self.rollers, diameters, angle, turning, speed=speed, slip=slip)
+        angle = self.contact_angle if contact_angle is None else contact_angle
+        return Kinematics.rolling(self.rollers, diameters, angle, self.turning, speed=speed, slip=slip)
 
     def loaded(
         self,
@@ -296,3 +342,7 @@ class RollerBearing:
         return roller_load_distribution(
             self, radial, axial, tilt=tilt, moment=moment, speed=speed, cage_angles=cage_angles
         )
+
+
+AnyBearing = BallBearing | RollerBearing
+"""What turns on balls or on rollers."""

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from asperity.arguments import Array, ArrayLike, finite_array, not_negative, require
 from asperity.contact.slices import SlicedContact
 from asperity.errors import ComputationError, Grade, InputError, OutOfRangeWarning, percent
-from asperity.structures.bearing_statics import STEPS
+from asperity.structures.bearing_statics import SPEEDS, STEPS
 from asperity.structures.least_energy import TOLERANCE, least_energy
 from asperity.structures.roller_bearing import RollerBearing
 from asperity.written_numbers import rounded
@@ -29,7 +30,7 @@ FORCES, MOMENTS = slice(0, 3), slice(3, 5)
 
 @dataclass(frozen=True, eq=False)
 class LoadedRollers:
-    """A roller bearing under a load at m angles of its cage, its Z rollers of n slices at ψ from the load.
+    """A roller bearing under a load at m angles of its cage, its Z rollers of n slices at ψ from it.
 
     Attributes
     ----------
@@ -91,10 +92,55 @@ class LoadedRollers:
         share = np.count_nonzero(self.inner_slices, axis=-1) / self.bearing.slices
         return np.asarray(self.bearing.roller_length * share)
 
+    def semi_axes(self, ring: str) -> tuple[Array, Array]:
+        """Half widths and half lengths (m, Z) of contacts with the ``"inner"`` or ``"outer"`` ring, m."""
+        inner = ring == "inner"
+        slices = self.inner_slices if inner else self.outer_slices
+        contact = self.bearing.inner_contact if inner else self.bearing.outer_contact
+        along = 2.0 * contact.radius / contact.modulus * contact.pressures(slices).max(axis=-1)
+        across = 0.5 * contact.length / contact.slices * np.count_nonzero(slices, axis=-1)
+        return along, across
+
+    @property
+    def inner_angle(self) -> Array:
+        """Contact angles with the inner ring (m, Z), rad; NaN of rollers that do not touch."""
+        return np.where(self.inner_load > 0.0, self.bearing.contact_angle, np.nan)
+
+    @property
+    def outer_angle(self) -> Array:
+        """Contact angles with the outer ring (m, Z), rad; NaN of rollers that do not touch."""
+        return np.where(self.outer_load > 0.0, self.bearing.contact_angle, np.nan)
+
+    @property
+    def contact_angle(self) -> float:
+        """Angle of the contacts, rad: that of the raceways."""
+        return self.bearing.contact_angle
+
     @property
     def touching(self) -> Array:
         """How many rollers touch the inner ring, at each angle of the cage (m,)."""
         return np.asarray(np.count_nonzero(self.inner_load, axis=1), dtype=float)
+
+    @cached_property
+    def leaving_speed(self) -> float | None:
+        """Turns per second from which on rollers leave the inner ring, all of which are pressed at rest.
+
+        None where it stands still or is slower, or where some roller is not pressed at rest.
+        """
+        load = np.array([self.radial, 0.0, self.axial, 0.0, 0.0])
+        angles = self.azimuth[:, 0]
+
+        def all_touch(speed: float) -> bool:
+            found = _solved(self.bearing, load, self.displacement[0, MOMENTS], speed, angles)
+            return bool(found.touching.min() == self.bearing.rollers)
+
+        low = 0.0
+        high = self.speed
+        if high == 0.0 or self.touching.min() == self.bearing.rollers or not all_touch(low):
+            return None
+        for _ in range(SPEEDS):
+            low, high = (middle, high) if all_touch(middle := 0.5 * (low + high)) else (low, middle)
+        return high
 
 
 def roller_load_distribution(

@@ -1,0 +1,135 @@
+"""A roller bearing that runs under a load: what of it is other than of a ball bearing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from asperity.case.any_case import LAW
+from asperity.case.ball_bearing import AroundKeys, BearingUnderLoad, FaultKeys
+from asperity.case.form import Section, section
+from asperity.case.ready_lists import NamedChanges
+from asperity.case.speed import span_of
+from asperity.errors import InputError
+from asperity.parameters import Choice, ListOf, key, keys_of, optional
+from asperity.structures.roller_bearing import ROLLER_BEARINGS, RollerBearing
+from asperity.written_numbers import rounded
+
+if TYPE_CHECKING:
+    from asperity.contact.slices import SlicedContact
+    from asperity.structures.roller_statics import LoadedRollers
+
+DIMENSIONS = keys_of(RollerBearing, otherwise="that of the named bearing")
+NEEDED = ("rollers", "roller_diameter", "roller_length", "pitch_diameter")
+BY_SLICES = "areal"
+"""The law of rollers: its force is that of all slices, on heights averaged under them."""
+
+
+class RollerGeometry(Section, parameters=DIMENSIONS):
+    """A roller bearing, named or by its dimensions."""
+
+    name: str | None = optional(
+        Choice(tuple(ROLLER_BEARINGS)), "NU205", "named bearing", "the dimensions are given"
+    )
+
+    @property
+    def bearing(self) -> RollerBearing:
+        """The bearing."""
+        given = {name: getattr(self, name) for name in DIMENSIONS if getattr(self, name) is not None}
+        return RollerBearing(**given) if self.name is None else RollerBearing.named(self.name, **given)
+
+    def default_of(self, name: str) -> Any:
+        """Value of a key that is left out: a dimension of the named bearing."""
+        if name in DIMENSIONS and self.name is not None and name not in self.given_names:
+            return getattr(self.bearing, name)
+        return super().default_of(name)
+
+    def problems(self) -> Iterator[InputError]:
+        """All dimensions of a bearing without a name, which must be one that can be."""
+        missing = [name for name in NEEDED if getattr(self, name) is None]
+        if self.name is None and missing:
+            remedy = f"Named bearings: {', '.join(ROLLER_BEARINGS)}."
+            yield InputError("name", f"none, and no {' and no '.join(missing)}", "these, or a name", remedy)
+            return
+        try:
+            _ = self.bearing
+        except InputError as error:
+            about = {
+                "drop of the crowning": "crowning_drop",
+                "straight middle of the crowning": "crowning_straight",
+            }
+            yield error.about(about[error.what]) if error.what in about else error
+
+
+class RollerBearingUnderLoad(BearingUnderLoad):
+    """A roller bearing runs under a constant load.
+
+    Numbers are in SI, or text with its unit. ``asperity new roller-bearing`` writes these keys as a case.
+
+    Examples
+    --------
+    >>> from asperity import RollerBearingUnderLoad
+    >>> case = RollerBearingUnderLoad(speed="1800 1/min", radial=2000, bearing={"name": "NU205"})
+    >>> f"{case.kinematics.ball_pass_outer:.1f} Hz"
+    '157.5 Hz'
+    """
+
+    TITLE = "A roller bearing runs under a load."
+    NEEDED = "a bearing and its load"
+    OPTIMISED_BY = ""
+    ROLLS: ClassVar = "roller"
+    WRITTEN_OUT: ClassVar = {
+        "bearing.name": '"NU205"', "radial": '"2 kN"', "inner_raceway.waviness": '"0.2 um"',
+        "outer_raceway.waviness": '"0.2 um"',
+    }  # fmt: skip
+
+    kind: str = key(Choice(("roller-bearing",)), "roller-bearing", "what rolls")
+    laws: tuple[str, ...] = key(
+        ListOf(LAW, least=1, once=True),
+        [BY_SLICES],
+        "laws of the contact force: areal, whose force on rollers is that of the slices of ISO/TS 16281",
+    )
+    bearing: RollerGeometry = section(  # type: ignore[assignment]
+        RollerGeometry, "the bearing: named, or by its dimensions"
+    )
+    balls: AroundKeys = section(AroundKeys, "what is on each roller all around")
+    fault: FaultKeys = section(
+        FaultKeys,
+        "a fault of a raceway or of a roller, there on = ball; of several each below [[fault]]",
+        repeated=True,
+    )
+
+    if TYPE_CHECKING:
+
+        @property
+        def static(self) -> LoadedRollers:  # type: ignore[override]
+            """The bearing under its load while it turns."""
+
+        @property
+        def contacts(self) -> tuple[tuple[SlicedContact, float], tuple[SlicedContact, float]]:  # type: ignore[override]
+            """Smooth contacts of a roller with the inner and the outer ring, and their largest loads, N."""
+
+    @property
+    def helping_changes(self) -> NamedChanges:
+        """No ready list: that of balls speaks of grooves and preload."""
+        return {}
+
+    @property
+    def title(self) -> str:
+        """Say what runs."""
+        name = "Roller bearing" if self.bearing.name is None else f"Roller bearing {self.bearing.name}"
+        return f"{name} at {span_of(self.speed, 60.0)} 1/min"
+
+    def problems(self) -> Iterator[InputError]:
+        """Laws that rollers have; and what holds of any bearing."""
+        others = [law for law in self.laws if law != BY_SLICES]
+        if others:
+            remedy = "Its force on rollers is that of slices; the others are made for the ellipse of a ball."
+            yield InputError("laws", ", ".join(others), f'"{BY_SLICES}"', remedy)
+            return
+        if self.axial > 0.0 and self.bearing.bearing.contact_angle == 0.0:
+            remedy = "Rollers slide along such raceways, and ribs are not in it. Give a contact_angle."
+            allowed = "0 N where bearing.contact_angle is 0"
+            yield InputError("axial", f"{rounded(self.axial, 4)} N", allowed, remedy)
+            return
+        yield from super().problems()

@@ -1,0 +1,217 @@
+"""Rollers on raceways that are closed around: what their slices feel, and the law that follows it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from scipy import fft
+
+from asperity.arguments import Array, ArrayLike, NDArray, positive
+from asperity.contact.hertz import Hertz
+from asperity.contact.slices import EXPONENT, SlicedContact
+from asperity.reduction.stiffness import ForceCurve
+from asperity.scenarios import raceway_laws, reducing
+from asperity.scenarios.geometry import HIGHEST_FORCE, Geometry
+from asperity.scenarios.raceway_laws import CELLS, CELLS_OF_FAULT, CELLS_OF_WAVE, FOLLOWED, OnRaceway
+from asperity.surfaces.faults import Fault
+from asperity.surfaces.raceway import AroundTexture, Raceway, raceway
+
+AnyContact = Hertz | SlicedContact
+"""Smooth contact of a ball, or of a roller, with its raceway."""
+STATES = 48
+"""Approaches of the force curve of a roller: closest at first touch."""
+LEAST_STATE = 1e-3
+"""Least of them over the largest."""
+STEPS = 30
+"""Of Newton's method for the approach over a fault."""
+
+
+def surface_on(
+    contact: AnyContact,
+    load: float,
+    radius: float,
+    texture: AroundTexture | None = None,
+    faults: Sequence[Fault] = (),
+    *,
+    seed: int = 0,
+) -> Raceway:
+    """Make a raceway, or the surface of a ball or roller, on the grid that its contacts ask for.
+
+    Parameters and what is refused as of `asperity.scenarios.raceway_laws.raceway_on`; that of rollers is as
+    wide as they are long, in whole numbers of lines for each slice.
+    """
+    if isinstance(contact, Hertz):
+        return raceway_laws.raceway_on(contact, load, radius, texture, faults, seed=seed)
+    texture = texture or AroundTexture()
+    around = 2.0 * math.pi * positive("radius of the raceway (m)", radius)
+    half_width, _ = contact.semi_axes(contact.approach(positive("load of a roller (N)", load)))
+    wave = [texture.shortest / CELLS_OF_WAVE] if texture.is_rough else []
+    along, across = (
+        min([most, *wave, *(fault.details[axis] / CELLS_OF_FAULT for fault in faults)])
+        for axis, most in enumerate((half_width / CELLS[0], contact.length / contact.slices))
+    )
+    stride = max(1, math.floor(half_width / CELLS[0] / along + 1e-9))
+    rows = stride * fft.next_fast_len(math.ceil(around / along / stride), real=True)
+    lines = contact.slices * (
+        2 * math.ceil(0.5 * (contact.length / contact.slices / across - 1.0) - 1e-9) + 1
+    )
+    steps = around / rows, contact.length / lines
+    return raceway(texture, faults, (rows, lines), steps, seed=seed, followed=FOLLOWED * half_width)
+
+
+def on_surface(contact: AnyContact, surface: Raceway, load: float, **others: Any) -> OnRaceway:
+    """A ball or a roller on a raceway: what its contact feels, and laws made of it."""
+    kind: Any = OnRaceway if isinstance(contact, Hertz) else OnRollerRaceway
+    made: OnRaceway = kind(contact, surface, load, **others)
+    return made
+
+
+def felt_by(contact: AnyContact, surface: Raceway, load: float) -> Array:
+    """Heights (rows,), m, closed, that the contact of a ball or roller under a load, N, feels around it."""
+    return on_surface(contact, surface, positive("load of a ball or roller (N)", load)).felt
+
+
+@dataclass(frozen=True, eq=False)
+class OnRollerRaceway(OnRaceway):
+    """A roller on a raceway: heights as its slices feel them, and the law that follows their mean.
+
+    Notes
+    -----
+    A slice feels heights along the path by the pressure of a flat punch of its half width b, whose transform
+    is J₀(kb): what a small wave changes. All slices together give way by one approach; each counts by its
+    stiffness under the load. Of a fault, where it is deeper than a slice is pressed in, the slice loses as
+    large a share of its force as the fault covers of its width; elsewhere the fault is a height. The roller
+    then sinks until all slices carry the load.
+    """
+
+    contact: SlicedContact  # type: ignore[assignment]
+
+    @cached_property
+    def axes(self) -> tuple[float, float]:
+        """Half width of the smooth contact under the load, and half its length, m."""
+        return self.contact.semi_axes(self.contact.approach(self.load))
+
+    @cached_property
+    def shape(self) -> Geometry:
+        """The gap of the smooth bodies along the path and by slices."""
+        step = self.surface.spacing[0]
+        half = math.ceil(raceway_laws.HALF_WINDOW * self.axes[0] / step)
+        path = (np.arange(2 * half + 1) - half) * step
+        gap = np.add.outer(path**2 / (2.0 * self.contact.radius), self.contact.drops)
+        width = self.contact.length / self.contact.slices
+        contact: Any = self.contact
+        largest = HIGHEST_FORCE * self.load
+        return Geometry(gap, (step, width), self.contact.modulus, contact, self.load, largest)
+
+    @cached_property
+    def approaches(self) -> Array:
+        """Approaches of the force curve, m, up to that of eight times the load."""
+        largest = self.contact.approach(HIGHEST_FORCE * self.load)
+        return np.asarray(largest * np.geomspace(LEAST_STATE, 1.0, STATES))
+
+    @cached_property
+    def curve(self) -> ForceCurve:
+        """Force of all slices over the approach, without tilt."""
+        found = self.contact.pressed(self.approaches)
+        return ForceCurve.from_samples(self.approaches, found.force, EXPONENT, found.stiffness[:, 0, 0])
+
+    @property
+    def datum(self) -> float:
+        """d₀, m, with which all states are positive in contact."""
+        return -min(self.curve.first_touch, -reducing.LEAST_DATUM)
+
+    def _in_slices(self, heights: Array) -> Array:
+        """Mean heights (rows, slices) of the lines of each slice."""
+        return np.asarray(heights.reshape(len(heights), self.contact.slices, -1).mean(axis=-1))
+
+    def _under_widths(self, heights: Array, half_width: float) -> Array:
+        """Heights (rows, …), closed around, under a flat punch of a half width, m."""
+        # not where contacts are only compiled
+        from scipy.special import j0
+
+        waves = 2.0 * np.pi * np.arange(self.rows // 2 + 1) / self.surface.circumference
+        passed = j0(waves * half_width).reshape(-1, *[1] * (heights.ndim - 1))
+        return np.asarray(fft.irfft(passed * fft.rfft(heights, axis=0), self.rows, axis=0))
+
+    @cached_property
+    def weights(self) -> Array:
+        """Shares (slices,) of the stiffness of the contact under the load."""
+        overlap = np.maximum(self.contact.approach(self.load) - self.contact.drops, 0.0)
+        stiffness = np.where(overlap > 0.0, overlap ** (EXPONENT - 1.0), 0.0)
+        return np.asarray(stiffness / stiffness.sum())
+
+    def averaged(self, heights: Array, axes: ArrayLike) -> Array:
+        """Heights (rows, lines), m, averaged under half widths (k, 2), m, with `over_faults`: (k, rows)."""
+        along = self._in_slices(heights) @ self.weights
+        widths = np.atleast_2d(axes)[:, 0]
+        return self.over_faults + np.stack([self._under_widths(along, float(each)) for each in widths])
+
+    @cached_property
+    def over_faults(self) -> Array:
+        """Height (rows,) that faults have for a roller under the load, m: by so much less is its approach."""
+        felt = np.zeros(self.rows)
+        if not self.surface.damaged.any():
+            return felt
+        near = self._near_faults()
+        pressed_in = np.maximum(self.contact.approach(self.load) - self.contact.drops, 0.0)
+        covered, heights = self._hollow(
+            np.repeat(pressed_in, self.surface.faults.shape[1] // self.contact.slices)
+        )
+        half_width = self.axes[0]
+        lost = self._under_widths(self._in_slices(covered), half_width)[near]
+        met = self._under_widths(self._in_slices(heights), half_width)[near]
+        constant = self.contact.stiffness_constant / self.contact.slices * np.clip(1.0 - lost, 0.0, 1.0)
+        smooth = self.contact.approach(self.load)
+        deepest = 2.0 * smooth + self._sinks()  # on the edges of what nothing carries in
+        approach = np.full(near.size, deepest)
+        for _ in range(STEPS):  # from above, where Newton's steps on a convex force do not overshoot
+            overlap = np.maximum(approach[:, None] - self.contact.drops + met, 0.0)
+            root = np.where(overlap > 0.0, overlap ** (EXPONENT - 1.0), 0.0)
+            missing = self.load - (constant * root * overlap).sum(axis=1)
+            slope = EXPONENT * (constant * root).sum(axis=1)
+            approach = np.minimum(approach + missing / np.maximum(slope, self.load / deepest), deepest)
+        felt[near] = smooth - approach
+        return felt
+
+    def _hollow(self, pressed_in: Array) -> tuple[Array, Array]:
+        """Shares of cells (rows, lines) over faults deeper than lines are pressed in, m; other heights, m.
+
+        Of cells that an edge crosses the share behind it, or the mean depth where that is less deep.
+        """
+        heights = self.surface.faults
+        covered = (heights < -pressed_in).astype(float)
+        heights = np.where(covered > 0.0, 0.0, heights)
+        edges = self.surface.edges
+        if edges is not None:
+            behind = 1.0 - edges.shares
+            deep = edges.drop > behind * pressed_in
+            covered = np.where(edges.crossed & deep, behind, covered)
+            heights = np.where(edges.crossed & ~deep, -edges.drop, heights)
+        return covered, heights
+
+    def _sinks(self) -> float:
+        """How far a roller sinks, m, until it lies on both edges of the longest fault, or on its bottom."""
+        sound = np.flatnonzero(~self.surface.damaged.any(axis=1))
+        rows = np.diff(np.append(sound, sound[:1] + self.rows)).max(initial=1)
+        length = float(rows) * self.surface.spacing[0]
+        return min(-float(self.surface.faults.min()), length**2 / (8.0 * self.contact.radius))
+
+    def _near_faults(self) -> NDArray[np.intp]:
+        """Rows where the contact reaches a fault."""
+        damaged = np.asarray(self.surface.damaged.any(axis=1))
+        reach = math.ceil(self.axes[0] / self.surface.spacing[0]) + 1
+        around = self._around(damaged, reach).astype(float)
+        return np.flatnonzero(np.convolve(around, np.ones(2 * reach + 1), mode="valid") > 0.5)
+
+    def warn_of_faults(self, laws: Sequence[str]) -> None:
+        """Nothing: slices know a fault only as they know it here."""
+
+    @property
+    def cells_over_faults(self) -> float:
+        """How many cells its contacts have over faults: none is solved."""
+        return 0.0
