@@ -20,6 +20,7 @@ from asperity.diagnostics import (
 )
 from asperity.diagnostics.confidence import COEFFICIENTS, Basis
 from asperity.diagnostics.decision import Diagnosis
+from asperity.diagnostics.prominence import Prominence
 from asperity.errors import InputError
 from asperity.structures.ball_bearing import BallBearing
 from faulty_signals import faulty_signal, orders
@@ -164,6 +165,37 @@ def test_a_long_record_whose_blows_slip_is_read_in_pieces():
     diagnosis = diagnose(signal, RATE, B6205.tones(), 50.0)
     assert [each.part for each in diagnosis.parts] == ["inner"]
     assert diagnosis.resolution == pytest.approx(0.1)
+
+
+def test_of_a_slow_shaft_no_more_is_held_than_the_turns_that_are_enough_and_the_lines_that_are_sought(
+    monkeypatch,
+):
+    """Long pieces take many times their memory: they are of 20 turns here; spectra end above the lines."""
+    slow = 3.0
+    signal = faulty_signal("outer", slow, RATE, 13.3, noise=0.05)
+    whole = diagnose(signal, RATE, B6205.tones(), slow)
+    assert whole.record.pieces == 1
+    ends = [each.amplitude.size * each.step for each in (whole.record.spectrum, whole.record.white)]
+    assert all(25.0 * orders("6205")["inner"] * slow < end < 0.45 * RATE for end in ends)
+    monkeypatch.setattr("asperity.diagnostics.decision.ENOUGH", 20.0)
+    monkeypatch.setattr("asperity.diagnostics.decision.MOST_SAMPLES", 2**14)
+    in_pieces = diagnose(signal, RATE, B6205.tones(), slow)
+    assert in_pieces.record.pieces == 2
+    assert in_pieces.turns == pytest.approx(20.0, rel=0.01)
+    for each in (whole, in_pieces):
+        assert [part.part for part in each.parts] == ["outer"]
+    monkeypatch.setattr("asperity.diagnostics.decision.MOST_SAMPLES", signal.size)
+    assert diagnose(signal, RATE, B6205.tones(), slow).record.pieces == 1
+
+
+def test_what_lies_above_the_lines_that_are_sought_changes_none_of_those_below():
+    amplitude = np.abs(np.random.default_rng(3).normal(size=4_000)) + 0.1
+    spectrum = 0.5 * np.arange(4_000.0), amplitude
+    every = Prominence.of(spectrum)
+    some = Prominence.of(spectrum, highest=700.0)
+    assert some.amplitude.size == 1_401
+    for name in ("amplitude", "background", "log_ratio"):
+        np.testing.assert_array_equal(getattr(some, name), getattr(every, name)[:1_401])
 
 
 def test_noise_says_nothing_of_speed_and_parts():

@@ -10,7 +10,7 @@ import numpy as np
 from asperity.arguments import ArrayLike, positive, require
 from asperity.diagnostics.confidence import Basis
 from asperity.diagnostics.envelopes import above_frequency
-from asperity.diagnostics.hypotheses import FINE, NEAR, BearingRecord, Hypothesis, Tone
+from asperity.diagnostics.hypotheses import FINE, NEAR, RANGE, TURNED, BearingRecord, Hypothesis, Tone
 from asperity.diagnostics.kurtogram import Kurtogram, kurtogram
 from asperity.diagnostics.prominence import HARMONICS, LOWEST_PLACE
 from asperity.diagnostics.recording import Recording, SignalPieces
@@ -40,6 +40,10 @@ EVEN = 0.5
 """Confidence of a part, at least, that is named in a shorter record."""
 LONGEST = 500.0
 """Turns of a piece of a record: blows that slip have wide lines in longer ones."""
+ENOUGH = 100.0
+"""Turns of a piece that is no longer than it must be, …"""
+MOST_SAMPLES = 2**20
+"""… as one of more samples is where a shaft turns slowly: it takes some twenty times their memory."""
 LEAST_DEPTH = {"stands": 0.25, "turns": 0.15}
 """Share by which the envelope follows the blows of a fault: balls that pass a sound ring that stands in the
 load make it rise and fall, too, by 0.19 at most in the records of sound bearings that were looked at."""
@@ -220,7 +224,7 @@ def diagnose_together(
     told = positive("speed (Hz)", speed)
     recordings = [Recording.of(each, rate, still=1.0 / told) for each in signals]
     stretches = [each for recording in recordings for each in recording.stretches]
-    longest = LONGEST * rate / told
+    longest = _longest_piece(rate / told)
     duration = SignalPieces.of(stretches, longest).size / rate
     part, tone = max(tones.items(), key=lambda each: each[1].order)
     blows = f"the blows of the {NAMES[part]} at {rounded(tone.order * told, 4)} Hz"
@@ -236,10 +240,17 @@ def diagnose_together(
     pieces = SignalPieces.of(stretches, longest, rate, told)
     reached = HARMONICS * tone.order * told
     seen = Kurtogram.mean(_kurtograms(pieces, rate, reached, progress))
-    record = BearingRecord.of(pieces, rate, seen, band or _ringing_band(seen, rate, reached), progress)
+    limits = band or _ringing_band(seen, rate, reached)
+    highest = HUM + TURNED * RANGE * told * max(1.0, *(each.highest for each in tones.values()))
+    record = BearingRecord.of(pieces, rate, seen, limits, highest, progress)
     found = decided(record, record.read(tones, told), tones, told)
     doubts = dict.fromkeys(each for recording in recordings for each in recording.doubts)
     return replace(found, doubts=tuple(doubts), fastest=fastest)
+
+
+def _longest_piece(samples_of_turn: float) -> float:
+    """Samples of a piece at most."""
+    return min(LONGEST * samples_of_turn, max(ENOUGH * samples_of_turn, MOST_SAMPLES))
 
 
 def _kurtograms(

@@ -142,18 +142,21 @@ class BearingRecord:
         rate: float,
         kurtogram: Kurtogram,
         limits: tuple[float, float],
+        highest: float = np.inf,
         progress: Progress | None = None,
     ) -> "BearingRecord":
-        """Pieces of a record at a sampling rate, Hz, their kurtogram, and the band of the second envelope."""
+        """Pieces of a record at a sampling rate, Hz, their kurtogram, the band of the second envelope, and
+        the highest frequency, Hz, at which lines are looked for: of a shaft that turns slowly a small part of
+        what long pieces hold."""
         views = "spectrum", "envelope of the whitened signal", "envelope of the band"
         plain, loud, ringing = (counted(pieces, len(pieces), view, progress) for view in views)
         levels = ((each, float(each.std())) for each in plain)
         white = (prewhitened(each, rate) for each in loud)
         return cls(
             duration=pieces.size / rate,
-            spectrum=Prominence.of(mean_spectrum(levels, rate)[0], means=len(pieces)),
-            white=Prominence.of_envelopes(white, rate, (0.0, 0.5 * rate), len(pieces)),
-            band=Prominence.of_envelopes(ringing, rate, limits, len(pieces)),
+            spectrum=Prominence.of(mean_spectrum(levels, rate)[0], means=len(pieces), highest=highest),
+            white=Prominence.of_envelopes(white, rate, (0.0, 0.5 * rate), len(pieces), highest),
+            band=Prominence.of_envelopes(ringing, rate, limits, len(pieces), highest),
             kurtogram=kurtogram,
             limits=limits,
             pieces=len(pieces),

@@ -65,9 +65,11 @@ class Prominence:
     level: float
 
     @classmethod
-    def of(cls, spectrum: Spectrum, level: float = 1.0, means: int = 1) -> "Prominence":
-        """How far the lines of a spectrum stand out, or of the mean of so many: noise has higher lines in one
-        than in the mean of many."""
+    def of(
+        cls, spectrum: Spectrum, level: float = 1.0, means: int = 1, highest: float = np.inf
+    ) -> "Prominence":
+        """How far the lines of a spectrum stand out up to a highest frequency, Hz, or of the mean of so many:
+        noise has higher lines in one than in the mean of many."""
         from scipy.ndimage import maximum_filter1d
 
         frequency, amplitude = spectrum
@@ -83,21 +85,29 @@ class Prominence:
         background = np.interp(np.arange(amplitude.size), centres, medians)
         ratio = amplitude / np.maximum(background, 1e-300)
         ratio[: LOWEST_PLACE - 1] = 0.0
-        highest = maximum_filter1d(ratio, 2 * WITHIN + 1)
-        log_ratio = np.log(np.clip(_as_of_one(highest, means), 1.0, COUNTED))
-        return cls(float(frequency[1]), amplitude, background, log_ratio, level)
+        kept = slice(None)
+        if highest < frequency[-1]:
+            kept = slice(0, int(highest / frequency[1]) + 1)
+        ratio = maximum_filter1d(ratio, 2 * WITHIN + 1)[kept]
+        log_ratio = np.log(np.clip(_as_of_one(ratio, means), 1.0, COUNTED))
+        return cls(float(frequency[1]), amplitude[kept].copy(), background[kept].copy(), log_ratio, level)
 
     @classmethod
     def of_envelopes(
-        cls, signals: Iterable[Array], rate: float, band: tuple[float, float], means: int = 1
+        cls,
+        signals: Iterable[Array],
+        rate: float,
+        band: tuple[float, float],
+        means: int = 1,
+        highest: float = np.inf,
     ) -> "Prominence":
-        """How far lines in the mean of so many envelopes, of signals of one length in a band, Hz, stand
-        out."""
+        """How far lines in the mean of so many envelopes, of signals of one length in a band, Hz, stand out,
+        up to a highest frequency, Hz."""
         envelopes = (np.abs(analytic_signal(signal, rate, *band)) for signal in signals)
         levelled = ((each, float(each.mean())) for each in envelopes)
         (frequency, amplitude), level = mean_spectrum(levelled, rate)
         held = frequency <= band[1] - band[0]
-        return cls.of((frequency[held], amplitude[held]), level, means)
+        return cls.of((frequency[held], amplitude[held]), level, means, highest)
 
     @property
     def spectrum(self) -> Spectrum:
