@@ -15,6 +15,8 @@ from asperity.written_numbers import count_of
 MOST_POINTS = 600
 """Points of a course: a case file holds so many."""
 FEWEST_POINTS = 2
+FEWEST_TURNS = 4.0
+"""Turns of a record that is looked at over angle, at least."""
 
 
 class SpeedCourse(float):
@@ -133,3 +135,8 @@ def reached(speed: float, distance: float) -> float:
 def slowest(speed: float) -> float:
     """A speed that is constant, or the slowest of one that is not."""
     return speed.slowest if isinstance(speed, SpeedCourse) else speed
+
+
+def speed_at(speed: float, time: Array) -> Array:
+    """A speed, constant or not, at some times (n,), s."""
+    return speed.at(time) if isinstance(speed, SpeedCourse) else np.full(np.shape(time), speed)

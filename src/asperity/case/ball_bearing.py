@@ -40,7 +40,7 @@ from asperity.parameters import (
 )
 from asperity.reference.bearings import LISTED, LISTING, named_bearings
 from asperity.rolling.resolution import PER_MODE
-from asperity.speeds import SpeedCourse, covered, reached
+from asperity.speeds import FEWEST_TURNS, SpeedCourse, covered, reached
 from asperity.structures.ball_bearing import PARTS, BallBearing, Kinematics
 from asperity.structures.modal import HIGHEST
 from asperity.surfaces.faults import Fault
@@ -565,6 +565,10 @@ class BearingUnderLoad(AnyCase):
         if covered(self.speed, self.duration) < turns:
             least = f"{1e3 * reached(self.speed, turns):.4g} ms"
             allowed = f"at least {least}, in which the slowest tone comes {FEWEST:g} times"
+            yield InputError("duration", written(self.duration, "s", "ms"), allowed)
+        if isinstance(self.speed, SpeedCourse) and self.speed.covered(self.duration) < FEWEST_TURNS:
+            least = f"{1e3 * self.speed.reached(FEWEST_TURNS):.4g} ms"
+            allowed = f"at least {least}, in which a run-up turns {FEWEST_TURNS:g} times"
             yield InputError("duration", written(self.duration, "s", "ms"), allowed)
         if self.envelope_band is not None and np.ptp(self.envelope_band) < 1.1 * max(tones):
             received = f"a width of {np.ptp(self.envelope_band):g} Hz"

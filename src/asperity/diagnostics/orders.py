@@ -11,10 +11,9 @@ import numpy as np
 from asperity.arguments import Array, ArrayLike, finite_array, positive, require
 from asperity.diagnostics.envelopes import Spectrum, amplitude_spectrum, analytic_signal, checked_signal
 from asperity.spectra import hann_window
+from asperity.speeds import FEWEST_TURNS
 from asperity.written_numbers import count_of, rounded
 
-FEWEST_TURNS = 4.0
-"""Turns of a record that is looked at over angle, at least."""
 FINER = 1.25
 """Samples in a turn, over those that the record has where it is slowest."""
 PER_OCTAVE = 24

@@ -14,6 +14,7 @@ from asperity import diagnostics
 from asperity.arguments import Array
 from asperity.case.ball_bearing import BearingUnderLoad
 from asperity.diagnostics import ISO_BANDS, LineFamily, Spectrum, band_velocities
+from asperity.diagnostics.orders import envelope_order_spectrum
 from asperity.errors import PhysicsWarning, percent, warn_of_findings
 from asperity.progress import Progress
 from asperity.rolling.bearing import RolledBearing, steady_where_still
@@ -33,6 +34,7 @@ from asperity.scenes.observers import OF_BEARINGS
 from asperity.scenes.records import recorded_group
 from asperity.scenes.result import root_attributes, scenario_group
 from asperity.schema import Values, bearing, contact, spectra, tree
+from asperity.speeds import SpeedCourse, speed_at
 from asperity.structures.ball_bearing import PARTS, Kinematics
 from asperity.structures.bearing_statics import LoadedBearing
 from asperity.written_numbers import rounded
@@ -88,7 +90,7 @@ def bearing_result(
         case,
         case.title,
         (*SOURCES, *seen.sources),
-        _verdict(heard, _deciding(apart), bool(case.faults)),
+        _verdict(case, heard, _deciding(apart)),
         caught,
         {NAMES[name]: f"{draw} on {radius:.6g} m, seed {case.seed}" for name, draw, radius in _draws(case)},
     )
@@ -153,6 +155,7 @@ def motion_group(computed: ComputedBearing) -> Values:
     balls = np.arange(computed.bearing.balls)
     stacked = computed.stacked
     return recorded_group(computed) | {
+        bearing.TACHO: speed_at(computed.case.speed, computed.first.time),
         bearing.ROLLING_BALL: 1 + balls,
         bearing.ROLLING_RING: list(RINGS),
         bearing.ROLLING_DIRECTION: list(DIRECTIONS),
@@ -179,7 +182,7 @@ def heard_group(case: BearingUnderLoad, runs: dict[str, RolledBearing]) -> Value
     lines = [diagnostics.amplitude_spectrum(law[0], rate) for law in signals]
     frequency = lines[0][0]
     kept = (frequency > 0.0) & (frequency <= case.highest_frequency)
-    struck = [diagnostics.envelope_spectrum(law[0], rate, (low, high)) for law in signals]
+    struck = [envelope_at_fastest(case, law[0], (low, high)) for law in signals]
     slip = max(case.cage_slip) + RESOLVED
     found = [diagnostics.explained_lines(each, families, slip=slip, harmonics=HARMONICS) for each in struck]
     clear = [diagnostics.clear_families(each, SILENT) for each in found]
@@ -202,6 +205,7 @@ def heard_group(case: BearingUnderLoad, runs: dict[str, RolledBearing]) -> Value
         bearing.BAND_VELOCITY: judged,
         bearing.ENVELOPE_LOW: low,
         bearing.ENVELOPE_HIGH: high,
+        bearing.ENVELOPE_SPEED: float(case.speed),
         **envelope_group(list(runs), struck, found, clear, highest),
     }
 
@@ -228,6 +232,19 @@ def envelope_group(
     }
 
 
+def envelope_at_fastest(case: BearingUnderLoad, signal: Array, band: tuple[float, float]) -> Spectrum:
+    """Spectrum of the envelope of a signal; of a run-up over angle, orders as frequencies at the fastest."""
+    rate = case.sampling_rate
+    if not isinstance(case.speed, SpeedCourse):
+        return diagnostics.envelope_spectrum(signal, rate, band)
+    turns = case.speed.covered(np.arange(signal.size) / rate)
+    if not np.ptp(signal):
+        return diagnostics.envelope_spectrum(signal, rate, band)
+    order, amplitude = envelope_order_spectrum(signal, rate, turns, band)
+    kept = order * case.speed <= band[1] - band[0]
+    return order[kept] * float(case.speed), amplitude[kept]
+
+
 LINES = {
     bearing.LINE_FREQUENCY: "frequency",
     bearing.LINE_AMPLITUDE: "amplitude",
@@ -242,7 +259,7 @@ def _of_lines(found: Mapping[str, LineFamily], what: str) -> list[Array]:
     return [np.pad(value, (0, HARMONICS - len(value)), constant_values=np.nan) for value in each]
 
 
-def _verdict(heard: Values, deciding: Sequence[str], faulty: bool) -> str:
+def _verdict(case: BearingUnderLoad, heard: Values, deciding: Sequence[str]) -> str:
     """How quiet the bearing is, by what in each band, and which part is heard if it has faults.
 
     Without, beats of waves of the parts lie in the envelope, some of them where lines of others would.
@@ -254,14 +271,15 @@ def _verdict(heard: Values, deciding: Sequence[str], faulty: bool) -> str:
         if np.isfinite(rms)
     )
     lines = zip(PARTS, heard[bearing.LINES_FOUND][0], heard[bearing.LINE_FREQUENCY][0], strict=True)
+    at_speed = f" at {rounded(60.0 * case.speed, 5)} 1/min" if isinstance(case.speed, SpeedCourse) else ""
     parts = " and of the ".join(
-        f"{NAMES[part]} ({rounded(at[0], 4)} Hz)" for part, found, at in lines if found
+        f"{NAMES[part]} ({rounded(at[0], 4)} Hz{at_speed})" for part, found, at in lines if found
     )
     law = heard[bearing.LAW][0]
     lead = f"Radial velocity by {law}: {told or 'no band is sampled'}"
     if not np.nan_to_num(velocities).any() and told:
         lead = f"Nothing vibrates by {law}: all balls are carried alike, on surfaces without waves"
-    struck = f" Its envelope has lines of {f'the {parts}' if parts else 'no part'}." if faulty else ""
+    struck = f" Its envelope has lines of {f'the {parts}' if parts else 'no part'}." if case.faults else ""
     return f"{lead}.{struck} {LEFT_OUT}"
 
 

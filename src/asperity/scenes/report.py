@@ -26,7 +26,18 @@ from asperity.reporting.figure import (
 )
 from asperity.reporting.page import answers_of, drawn_figures, page, sections_of
 from asperity.results import read_result
-from asperity.scenes.figures import bearing, effects, force, measured, motion, noise, scene, sideways, track
+from asperity.scenes.figures import (
+    bearing,
+    effects,
+    force,
+    measured,
+    motion,
+    noise,
+    run_up,
+    scene,
+    sideways,
+    track,
+)
 from asperity.scenes.schema import KEPT
 from asperity.schema import bearing as of_bearing
 from asperity.schema import provenance, rolling
@@ -45,6 +56,7 @@ CHAPTERS = (
         (bearing.bands_table, bearing.lines_table),
         bearing.bearing_answers,
     ),
+    Chapter("run_up", "Its run-up", run_up.RUN_UP),
     Chapter("load", "How it carries its load", (bearing.ball_turn,), (bearing.ball_contacts_table,)),
     Chapter(
         "noise",

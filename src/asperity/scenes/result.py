@@ -24,6 +24,7 @@ from asperity.scenes.over_frequency import body_motion, spectra_group
 from asperity.scenes.population import answers
 from asperity.scenes.records import recorded_group
 from asperity.schema import VERSION, Values, group, provenance, rolling, spectra, tree
+from asperity.speeds import speed_at
 from asperity.structures.rail_poles import RailBetween, RailPoles
 from asperity.written_numbers import rounded
 
@@ -181,6 +182,7 @@ def rolling_group(computed: Computed) -> Values:
     over, rolls = (getattr(schema, name.upper()) for name in case.DISPLACEMENTS)
     laid_out: Values = recorded_group(computed) | {
         rolling.POSITION: first.positions[0],
+        rolling.TACHO: speed_at(case.speed, first.time),
         rolling.OFFSET: scene.offsets,
         rolling.STATIC_LOAD: scene.loads,
         rolling.RELATIVE_DISPLACEMENT: stack("relative_displacement"),

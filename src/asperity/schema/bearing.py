@@ -72,6 +72,7 @@ INNER_FORCE, OUTER_FORCE = (
 )
 RING_FORCES = {"inner": INNER_FORCE, "outer": OUTER_FORCE}
 """Parts of the forces of all contacts, by the ring."""
+TACHO = _rolling("tacho_speed(time)", "Hz", "turns per second of the ring that turns")
 SPECTRA_SENSOR = _spectra("ring_sensor", "rad", _SENSOR)
 _LEVEL = "level of the acceleration of the outer ring, radially"
 ACCELERATION_LEVEL = _spectra(
@@ -120,6 +121,9 @@ ENVELOPE_LOW, ENVELOPE_HIGH = (
     _fact(f"envelope_{end}", "Hz", f"{end} end of the band of which the envelope is taken")
     for end in ("low", "high")
 )
+ENVELOPE_SPEED = _fact(
+    "envelope_speed", "Hz", "speed of which the frequencies of the envelope are; of a run-up the fastest"
+)
 HARMONIC = _bearing("harmonic", "1", "multiple of the tone of a part")
 _BEYOND = "the envelope does not reach it"
 
@@ -132,6 +136,32 @@ LINE_FREQUENCY = _line("frequency", "Hz", "frequency of the line found next to i
 LINE_AMPLITUDE = _line("amplitude", "m/s2", "amplitude of the line of the envelope next to the tone")
 LINE_SIDE_BANDS = _line("side_bands", "m/s2", "larger amplitude one modulation beside it")
 LINES_FOUND = _bearing("lines_found(law, part)", "1", "whether its lines stand out, 1 or 0")
+
+# --- a run-up
+
+_changing = partial(Entry, "bearing", condition="of a ball bearing whose speed changes")
+_OF_ACCELERATION = "amplitude of lines of the acceleration"
+_APART = "of a ball bearing whose speed changes by a tenth or more"
+_told_apart = partial(Entry, "bearing", condition=_APART)
+ORDER = _changing("order", "1", "events in a turn of the ring that turns")
+ORDER_AMPLITUDE = _changing(
+    "order_amplitude(law, order)", "m/s2", f"{_OF_ACCELERATION} over angle, first sensor", missing=_STILL
+)
+RUN_UP_SPEED = _changing("run_up_speed", "Hz", "middle of a range of speeds")
+RUN_UP_FREQUENCY = _changing("run_up_frequency", "Hz", "middle of a range of frequencies")
+RUN_UP_AMPLITUDE = _changing(
+    "run_up_amplitude(run_up_speed, run_up_frequency)",
+    "m/s2",
+    f"{_OF_ACCELERATION} in pieces of the record, the highest in a range, main law, first sensor",
+    missing="no piece of the record is at the speed, or nothing vibrates",
+)
+FOLLOWING_ORDER = _told_apart("following_order", "1", "middle of a band of orders")
+FOLLOWS = _told_apart("follows_speed(following_order)", "m/s2", "what of the lines follows the speed")
+STAYING_FREQUENCY = _told_apart("staying_frequency", "Hz", "middle of a band of frequencies")
+STAYS = _told_apart(
+    "stays_at_frequency(staying_frequency)", "1", "factor by which lines are larger there at any speed"
+)
+UNEXPLAINED = Attribute("bearing", "unexplained", "dB", "rms of what the two leave of the lines", _APART)
 
 FIRST = {"harmonic": 1}
 KEPT: dict[Entry, dict[str, int]] = {

@@ -10,6 +10,7 @@ CONTACTS = "number of the contact, body by body, each from its rearmost"
 LAW = _entry("law", "1", "contact law")
 TIME = _entry("time", "s", "time since the run-in")
 POSITION = _entry("position(time)", "m", "position of the first contact, in rolling direction")
+TACHO = _entry("momentary_speed(time)", "m/s", "speed of the contacts at each time")
 CONTACT = _entry("contact", "1", f"{CONTACTS}; of a bearing ball by ball, with the inner ring first")
 OFFSET = _entry("offset(contact)", "m", "position of a contact ahead of that of the run")
 STATIC_LOAD = _entry("static_load(contact)", "N", "static force of a contact")
@@ -27,4 +28,4 @@ FORCES = {
     "peak_force": "largest contact force",
 }
 """Numbers that tables give of a contact force, N, and what they are."""
-SPEED = Attribute("rolling", "speed", "m/s", "speed of the contacts")
+SPEED = Attribute("rolling", "speed", "m/s", "speed of the contacts; of one that changes the fastest")

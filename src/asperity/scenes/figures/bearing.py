@@ -210,6 +210,13 @@ def _orders(tree: DataTree) -> chart.Second:
     return chart.Second("orders of the speed", 1.0 / (data.number(tree, bearing.TURNING) or 1.0))
 
 
+def _at_fastest(tree: DataTree) -> str:
+    """Of which speed frequencies of tones are, of a run-up."""
+    if not data.present(tree, bearing.ORDER):
+        return ""
+    return f", at the fastest, {rounded(60.0 * (data.number(tree, bearing.TURNING) or 0.0), 5)} 1/min"
+
+
 @figure("Spectrum of the radial velocity", Of(spectra.FREQUENCY), Of(bearing.VELOCITY_AMPLITUDE, "{law}"))
 def velocity_spectrum(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
     """Highest lines in stretches of an octave, in dB, and the tones of the parts."""
@@ -226,7 +233,8 @@ def velocity_spectrum(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | st
     yield chart.Panel(along, across, (*_tones(tree, frequency[-1]), *drawn), height=4.4)
     yield (
         "Lines of the radial velocity of the outer ring at the first accelerometer; the highest of each 1/96 "
-        "octave. Dashed: at which frequencies the places of a part are met, in pure rolling."
+        "octave. Dashed: at which frequencies the places of a part are met, in pure rolling"
+        f"{_at_fastest(tree)}."
     )
 
 
@@ -253,6 +261,8 @@ def envelope_spectrum(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | st
         f"{low:.0f} and {high:.0f} Hz, at the first accelerometer. Dashed: expected in pure rolling; dots: "
         "lines of the main law that stand out, with their multiples."
     )
+    if at := _at_fastest(tree):
+        yield f"Of a run-up it is taken over angle, where lines are narrow: frequencies are orders{at}."
 
 
 LEVELS = 48
