@@ -1,0 +1,63 @@
+"""A bearing whose speed changes: what its result says over angle, over speed, and of what stays."""
+
+import numpy as np
+import pytest
+
+import asperity
+from asperity.scenes.report import CHAPTERS, figures_of
+from asperity.schema import bearing
+from small_cases import BEARING
+
+RUN_UP = BEARING | {"speed": "3000..4500 1/min in 0.14 s"}
+RUN_UP = {name: each for name, each in RUN_UP.items() if name != "duration"}
+FIRST, LAST, WHOLE = 50.0, 75.0, 0.14
+ORDER = 4.5 * (1.0 - 7.94 / 39.04)
+"""Balls that pass the pit in a turn."""
+
+
+@pytest.fixture(scope="module")
+def tree():
+    return asperity.run(RUN_UP, brief=True)
+
+
+def group(tree, name="bearing"):
+    return tree[name].to_dataset()
+
+
+def test_a_tacho_stands_beside_the_signals_and_angles_are_its_integral(tree):
+    rolling = group(tree, "rolling")
+    time, tacho = rolling["time"].values, rolling["tacho_speed"].values
+    assert time[-1] == pytest.approx(WHOLE)
+    assert tacho == pytest.approx(FIRST + (LAST - FIRST) * time / WHOLE)
+    turned = np.ptp(rolling["ball_azimuth"].values[0]) / (2.0 * np.pi)
+    assert turned == pytest.approx(0.5 * (1.0 - 7.94 / 39.04) * 0.5 * (FIRST + LAST) * WHOLE, rel=1e-9)
+
+
+def test_the_pit_is_found_over_angle_at_its_order(tree):
+    """Of nine turns lines are 1/9 of an order wide; over time those at 3.6 in a turn are smeared by 1.2."""
+    found = group(tree)
+    assert found["lines_found"].values[0].tolist() == [1.0, 0.0, 0.0]
+    assert found.attrs["envelope_speed"] == pytest.approx(LAST)
+    lines = found["line_frequency"].values[0, 0] / LAST
+    assert lines == pytest.approx(ORDER * np.arange(1, 6), abs=0.5 / 8.75)
+    assert f"({lines[0] * LAST:.4g} Hz at 4500 1/min)" in tree.attrs["verdict"]
+    order, amplitude = found["order"].values, found["order_amplitude"].values[0]
+    near = np.abs(order / ORDER - np.round(order / ORDER)) * ORDER
+    low = (order > 0.6 * ORDER) & (order < 4.4 * ORDER)
+    assert amplitude[low & (near < 0.1)].max() > 5.0 * np.median(amplitude[low & (near > 0.5)])
+
+
+def test_the_run_up_is_laid_on_speeds_and_drawn(tree):
+    found = group(tree)
+    speeds = found["run_up_speed"].values
+    assert (speeds > FIRST).all()
+    assert (speeds < LAST).all()
+    assert np.isfinite(found["run_up_amplitude"].values).any(axis=1).sum() > 20
+    changing = [each for each in vars(bearing).values() if "speed changes" in getattr(each, "condition", "")]
+    assert {each.name for each in changing} <= {*found, *found.coords, *found.attrs}
+    chapter = next(each for each in CHAPTERS if each.name == "run_up")
+    drawn = {each.name: each for each in figures_of(tree)}
+    assert {each.name for each in chapter.figures} <= set(drawn)
+    assert "at the fastest, 4500 1/min" in drawn["envelope_spectrum"].caption
+    assert "over angle, where lines are narrow" in drawn["envelope_spectrum"].caption
+    assert next(iter(drawn["run_up_map"].columns)).startswith("run_up_frequency")
