@@ -119,6 +119,18 @@ def test_motion_over_the_height_is_squared_and_averaged():
     assert_allclose(RAIL.contact_shapes(0.01) @ motion, [0.04, moved[-1]])
 
 
+def test_supports_hold_the_foot():
+    """Its bottom sideways and its own twist, as stiff as those of a rail that keeps its form."""
+    keeps = LateralTrack(UIC60)
+    plain, found = keeps.support(OMEGA), RAIL.support(OMEGA)
+    below = SECTION.heights[1] - SECTION.heights[0]
+    sideways = plain[0, 0]
+    roll = plain[1, 1] - keeps.foot_depth**2 * sideways
+    assert np.all(found[:2] == 0.0)
+    expected = [[sideways, -below * sideways], [-below * sideways, below**2 * sideways + roll]]
+    assert_allclose(found[2:, 2:], expected, rtol=1e-9)
+
+
 PRINTED = {  # mean of the bounds of stop bands, Hz, at multiples of π/(0.65 m): waves sideways
     1: (452.5, 795.4, 1835.2, 4375.1),
     2: (1427.4, 2170.3, 2733.3, 5296.6),
