@@ -66,7 +66,7 @@ def test_a_fault_takes_its_part_of_the_length_or_of_the_width_of_a_roller():
         spall = Fault("spall", length=length, width=width, depth=1e-4)
         return -on_surface(STRAIGHT, surface_on(STRAIGHT, LOAD, RADIUS, faults=[spall]), LOAD).over_faults
 
-    long, short = sunk(2e-3), sunk(2e-5)
+    long, short = sunk(1e-3), sunk(4e-5)
     assert long.max() == pytest.approx(smooth * ((30 / 41) ** -0.9 - 1.0), rel=0.03)
     assert 0.0 < short.max() < 0.5 * long.max()
     assert np.count_nonzero(short) < np.count_nonzero(long) < 0.1 * len(long)

@@ -11,6 +11,7 @@ from asperity.case.form import Section, section
 from asperity.case.ready_lists import NamedChanges
 from asperity.case.speed import span_of
 from asperity.errors import InputError
+from asperity.laws import LawSpec, Need, spec_of
 from asperity.parameters import Choice, ListOf, key, keys_of, optional
 from asperity.structures.roller_bearing import ROLLER_BEARINGS, RollerBearing
 from asperity.written_numbers import rounded
@@ -23,6 +24,11 @@ DIMENSIONS = keys_of(RollerBearing, otherwise="that of the named bearing")
 NEEDED = ("rollers", "roller_diameter", "roller_length", "pitch_diameter")
 BY_SLICES = "areal"
 """The law of rollers: its force is that of all slices, on heights averaged under them."""
+
+
+def _follows_averages(law: LawSpec) -> bool:
+    """Whether a law is a force curve on averaged heights: a roller has no scan, and no ellipse."""
+    return Need.AREAL in law.needs and not law.sees_heights
 
 
 class RollerGeometry(Section, parameters=DIMENSIONS):
@@ -122,7 +128,7 @@ class RollerBearingUnderLoad(BearingUnderLoad):
 
     def problems(self) -> Iterator[InputError]:
         """Laws that rollers have; and what holds of any bearing."""
-        others = [law for law in self.laws if law != BY_SLICES]
+        others = [law for law in self.laws if not _follows_averages(spec_of(law))]
         if others:
             remedy = "Its force on rollers is that of slices; the others are made for the ellipse of a ball."
             yield InputError("laws", ", ".join(others), f'"{BY_SLICES}"', remedy)
