@@ -239,6 +239,8 @@ class AnyCase(Section):
     """Function (ready case, progress) that says what will be computed, a `scenarios.preparing.Plan`."""
     SCANNED_BY: ClassVar[str] = ""
     """Function (ready case) that sizes its scans, by what for; empty of a kind without long ones."""
+    LAID_BY: ClassVar[str]
+    """Function (ready case, name of a law, ring of a bearing) that lays a law out on its path."""
     REFINED_BY: ClassVar[str]
     """Function (ready case, its result) that lists the settings by which it is made finer."""
     PRESSED_BY: ClassVar[str]

@@ -313,6 +313,7 @@ class BearingUnderLoad(AnyCase):
     PREPARED_BY = "asperity.scenarios.prepared_bearing.prepare_bearing"
     COMPUTED_BY = "asperity.scenes.bearing.bearing_result"
     PLANNED_BY = "asperity.scenarios.prepared_bearing.planned_bearing"
+    LAID_BY = "asperity.scenarios.prepared_bearing.law_on_raceway"
     REFINED_BY = "asperity.scenes.bearing_refining.settings_of_bearing"
     PRESSED_BY = "asperity.serving.contact_preview.raceway_surface"
     OPTIMISED_BY = "asperity.optimising.bearing.OF_BEARINGS"

@@ -62,6 +62,7 @@ class Case(AnyCase):
     PREPARED_BY = "asperity.scenarios.preparing.prepare"
     COMPUTED_BY = "asperity.scenes.result.computed_result"
     PLANNED_BY = "asperity.scenes.planning.planned_scene"
+    LAID_BY = "asperity.scenarios.laws.law_on_path"
     SCANNED_BY = "asperity.scenarios.preparing.scan_sizes"
     REFINED_BY = "asperity.scenarios.refining.settings_of_scene"
     PRESSED_BY = "asperity.serving.contact_preview.scene_surface"

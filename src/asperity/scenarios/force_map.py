@@ -10,18 +10,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from asperity.arguments import Array, ArrayLike, finite_array, one_of, require
-from asperity.case.any_case import AnyCase
-from asperity.case.ball_bearing import BearingUnderLoad
+from asperity.case.any_case import AnyCase, function_named
 from asperity.case.cases import as_case
-from asperity.case.scene import Case
 from asperity.errors import InputError
 from asperity.files import write_bytes
 from asperity.laws import Law
 from asperity.laws.layout import force
 from asperity.results import save, variable
-from asperity.scenarios.laws import reduced_case
-from asperity.scenarios.prepared_bearing import RINGS, prepare_bearing, raceways_of
-from asperity.scenarios.preparing import prepare
 
 if TYPE_CHECKING:
     from xarray import DataArray
@@ -39,12 +34,9 @@ def law_of(case: AnyCase, name: str | None = None, *, ring: str = "outer") -> La
     By default the main one. `ring` is ``"inner"`` or ``"outer"``.
     """
     name = one_of("law", case.laws[0] if name is None else name, case.laws)
-    if isinstance(case, BearingUnderLoad):
-        prepared = prepare_bearing(case)
-        built: Law = raceways_of(prepared, None)[RINGS.index(one_of("ring", ring, RINGS))].build(name)
-        return built
-    assert isinstance(case, Case)
-    return reduced_case(prepare(case, "case"), lambda *_: None).build(name)
+    prepared = function_named(case.PREPARED_BY)(case, "case")
+    built: Law = function_named(case.LAID_BY)(prepared, name, ring)
+    return built
 
 
 def force_map(

@@ -210,3 +210,8 @@ def working_point(
     if contact.linearise == "secant":
         return approach, shape.load / (approach + ensemble.datum)
     return approach, float(ensemble.curve.stiffness(approach))
+
+
+def law_on_path(prepared: PreparedCase, name: str, ring: str) -> Law:
+    """A law on the path of bodies that roll, which has no rings."""
+    return reduced_case(prepared, lambda *_: None).build(name)

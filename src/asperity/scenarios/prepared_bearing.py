@@ -9,9 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from asperity.arguments import one_of
 from asperity.case.ball_bearing import AroundKeys, BearingUnderLoad
 from asperity.errors import InputError, PhysicsWarning
-from asperity.laws import Need, spec_of
+from asperity.laws import Law, Need, spec_of
 from asperity.progress import Progress
 from asperity.scenarios import compiling, preparing, reducing, run_time
 from asperity.scenarios.doubts import doubt_bearing
@@ -131,6 +132,11 @@ def raceways_of(prepared: PreparedBearing, progress: Progress | None) -> list[On
         )
         for (smooth, load), surface, radius, pace in each
     ]  # fmt: skip
+
+
+def law_on_raceway(prepared: PreparedBearing, name: str, ring: str) -> Law:
+    """A law on the inner or the outer raceway, without the texture of a ball."""
+    return raceways_of(prepared, None)[RINGS.index(one_of("ring", ring, RINGS))].build(name)
 
 
 def planned_bearing(prepared: PreparedBearing, progress: Progress) -> preparing.Plan:
