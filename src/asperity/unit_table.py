@@ -174,6 +174,16 @@ def scale_of(unit: str) -> Scale | None:
     return None if pending else found
 
 
+def symbols() -> list[str]:
+    """The first name of each unit, without prefixes."""
+    return [names.split()[0] for names in UNITS]
+
+
+def is_known(name: str) -> bool:
+    """Whether a word in a unit is one of these units, or a word that stands between them."""
+    return name in ("per", *_WORDS, *_AFTER) or named_unit(name) is not None
+
+
 @cache
 def named_unit(name: str) -> Scale | None:
     """Scale of one unit by its name, with a prefix or in the plural; None where there is none."""

@@ -6,7 +6,7 @@ from decimal import Decimal
 from functools import lru_cache
 
 from asperity.errors import InputError
-from asperity.unit_table import ONE, scale_of
+from asperity.unit_table import ONE, is_known, scale_of, symbols
 
 _NUMBER = re.compile(
     r"\s*+([+-]?(?:[0-9]++\.?[0-9]*+|\.[0-9]++)(?:[eE][+-]?[0-9]++)?|[+-]?inf|nan)(?![0-9.,_])\s*+(.*)",
@@ -54,7 +54,7 @@ def factor(unit: str, dimension: str) -> float:
         wanted = scale_of(dimension) or ONE
         if found is not None and found.converts(wanted):
             return (found.of_turns() if dimension == "Hz" else found).value
-        remedy = "Check its spelling."
+        remedy = _spelled_otherwise(unit, dimension)
         if found is not None:
             such = f"Write the quantity with such a unit, as in '1 {dimension}'."
             remedy = such if dimension else "Leave the unit away."
@@ -68,6 +68,19 @@ def _meant(unit: str, dimension: str) -> str:
     alike = [each for each in (*_WRITTEN, *(p + dimension for p in prefixes)) if _letters(each) == letters]
     found = [f'"{each}"' for each in dict.fromkeys(alike) if _converts(each, dimension)]
     return f"Did you mean {' or '.join(found)}?" if found else ""
+
+
+def _spelled_otherwise(unit: str, dimension: str) -> str:
+    """Sentence that names the part of a unit that is unknown, and those that fit in its place."""
+    unknown = [name for name in re.findall(r"[A-Za-zµμΩ°%]+", unit) if not is_known(name)]
+    if len(unknown) != 1:
+        return "Check its spelling."
+    (name,) = unknown
+    fitting = [each for each in symbols() if _converts(unit.replace(name, each), dimension)]
+    known = f" Known in its place: {', '.join(fitting)}." if fitting else ""
+    if name == unit:
+        return f"Check its spelling.{known}"
+    return f"'{name}' in it is unknown: check its spelling.{known}"
 
 
 def _converts(unit: str, dimension: str) -> bool:
