@@ -78,6 +78,14 @@ def matlab_hdf5(**variables):
     return b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(128) + stream.getvalue()[128:]
 
 
+def behind_a_block(size, begin=b""):
+    """HDF5 whose signature stands behind bytes of whoever wrote it."""
+    stream = io.BytesIO()
+    with h5py.File(stream, "w", userblock_size=size) as file:
+        file["z"] = np.array(HEIGHTS, dtype=float)
+    return begin.ljust(size, b"\0") + stream.getvalue()[size:]
+
+
 def holed(marker, heights=STORED, at=(2, 1)):
     """Heights with a marker at the second point along x and the third along y."""
     stored = np.array(heights, dtype=float)
@@ -116,6 +124,10 @@ WHOLE = {
     "matlab structure": ("a.mat", matlab(s={"z": HEIGHTS, "rate": 1.0}), NM | {"array": "s.z"}),
     "matlab 7.3": ("a.mat", matlab_hdf5(z=HEIGHTS, words="abc"), NM),
     "netCDF": ("a.nc", netcdf(), {}),
+    **{
+        f"HDF5 behind {size} bytes as {name}": (name, behind_a_block(size, begin), NM)
+        for name, size, begin in (("a.nc", 512, b""), ("a.dat", 4096, b"# of X\n"), ("a", 1024, b"PK"))
+    },
     "netCDF image": ("a.nc", netcdf(z=("yx", STORED, {})), {}),
     "netCDF that falls": ("a.nc", netcdf(x=7 - 2.0 * np.arange(4), z=("xy", HEIGHTS[::-1], {})), {}),
     "netCDF without units": ("a.nc", netcdf(lateral=None, unit=""), NM),

@@ -10,6 +10,7 @@ import numpy as np
 from asperity import extensions
 from asperity.arguments import require, shown, whole
 from asperity.errors import InputError, MissingPointsWarning, percent
+from asperity.hdf5 import is_hdf5
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.readers import arrays, guards, iso_25178, matlab, simpack, text
 from asperity.surfaces.readers.belief import doubt_depth, judge_sizes
@@ -218,7 +219,7 @@ def _by_content(file: Path, head: bytes) -> str | None:
         return ".npy"
     if head.startswith(matlab.HEAD) or (extension == ".mat" and not text.holds_text(file)):
         return ".mat"
-    if head.startswith((b"\x89HDF", *CLASSIC)) and extension in ("", ".nc", ".nc4", ".cdf", ".dat"):
+    if extension in ("", ".nc", ".nc4", ".cdf", ".dat") and (head.startswith(CLASSIC) or is_hdf5(file)):
         return ".nc"
     if extension in (".prw", ".prr") and simpack.holds_profile(file):
         return extension
