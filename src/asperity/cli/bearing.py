@@ -22,8 +22,8 @@ from asperity.terminal import say, say_table
 from asperity.written_numbers import rounded
 
 WIDTH = 122
-TOLD = ("balls", "displacement", "stiffness", "imbalance", "tones", "speed", "speed_is", "band", "lines",
-        "faults", "confidence", "resolution", "turns", "doubts", "signals", "verdict",
+TOLD = ("balls", "displacement", "stiffness", "imbalance", "tones", "speed", "speed_is", "tacho", "band",
+        "lines", "faults", "confidence", "resolution", "turns", "doubts", "signals", "verdict",
         "catalogue")  # fmt: skip
 """Names of what is said to programs."""
 OPTIONS = ("radial", "axial", "speed", "clearance", "contact_damping")

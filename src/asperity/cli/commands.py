@@ -380,6 +380,16 @@ BEARING = [
     click.Option(["--array"], help="Name of the signal, where a file holds several."),
     click.Option(["--column"], type=int, help="Number of its column, from 1, where there are several."),
     click.Option(
+        ["--tacho"],
+        metavar="COLUMN",
+        help="Column of a tacho or a speed beside it, by number, or its array: it is read over angle.",
+    ),
+    click.Option(
+        ["--tacho-reads"],
+        metavar="WHAT",
+        help="What the tacho reads: '1/min', 'Hz', or '60 pulses' in a turn. [default: as its heading says]",
+    ),
+    click.Option(
         ["--band"], help="Frequencies of the envelope: 'all', or as '2 kHz, 4 kHz'. [default: found]"
     ),
     click.Option(

@@ -24,6 +24,7 @@ from asperity.scenes.bearing import HARMONICS, REACH, envelope_group, tones_grou
 from asperity.scenes.figures.bearing import envelope_spectrum, kurtogram_panel
 from asperity.schema import tree
 from asperity.studies.signals import Recorded, read_record
+from asperity.studies.tacho import Turned, at_constant_speed, fitting_speed, read_turned
 from asperity.surfaces.readers.hints import on_command_line, spelled
 from asperity.terminal import say, say_table
 from asperity.units import quantity
@@ -52,14 +53,29 @@ def heard(
     column: int | None,
     band: str | None,
     known: str | None,
+    tacho: str | None = None,
+    tacho_reads: str | None = None,
 ) -> dict[str, Any]:
     """Print what signals of a bearing say and draw it; return the numbers."""
     allowed = "the speed at which it was recorded"
-    require(keys.speed, "speed", "nothing", allowed, 'Give it, as in --speed "1800 1/min".')
+    remedy = 'Give it, as in --speed "1800 1/min", or --tacho.'
+    require(keys.speed or tacho, "speed", "nothing", allowed, remedy)
+    require(tacho or tacho_reads is None, "--tacho-reads", f"'{tacho_reads}'", "--tacho COLUMN with it")
     told = float(keys.speed or 0.0)
     tones = keys.bearing.tones(axial=keys.axial > 0.0)
     with progress_bar() as progress:
         signals, sampled = _read(files, rate, progress, array=array, column=column)
+        turned: dict[str, Any] | None = None
+        if tacho is not None:
+            courses = {
+                name: read_turned(file, signal, tacho, tacho_reads, array)
+                for file, (name, signal) in zip(files, signals.items(), strict=True)
+            }
+            told = fitting_speed(list(courses.values()), told)
+            resampled = at_constant_speed(list(signals.values()), list(courses.values()), told)
+            signals = dict(zip(signals, resampled, strict=True))
+            sampled = resampled[0].rate
+            turned = _turned(courses, told)
         edges = _band(band, sampled)
         told_of = progress if sum(each.values.size for each in signals.values()) >= MANY else None
         fastest = keys.bearing.fastest
@@ -88,6 +104,7 @@ def heard(
     names = ("expected", "deviation", "found", "frequency", "amplitude", "background", "side_bands")
     return {
         **_told(diagnosis),
+        "tacho": turned,
         "band": diagnosis.record.limits,
         "lines": {
             part: each and {name: getattr(each, name) for name in names} for part, each in found.items()
@@ -98,6 +115,18 @@ def heard(
         ],
         "verdict": verdict,
     }
+
+
+def _turned(courses: Mapping[str, Turned], told: float) -> dict[str, Any]:
+    """Say how fast all turned, and of which speed frequencies are; return that."""
+    slow, _, fast = np.transpose([each.speeds for each in courses.values()])
+    slowest, fastest = float(slow.min()), float(fast.max())
+    span = f"{rounded(60.0 * slowest, 5)} to {rounded(60.0 * fastest, 5)} 1/min"
+    say(
+        f"Read over angle, by the tacho: {span}. Frequencies are those at {rounded(60.0 * told, 5)} 1/min; "
+        f"resonances are smeared by a factor of {rounded(fastest / slowest, 3)}."
+    )
+    return {"slowest": slowest, "fastest": fastest, "at": told}
 
 
 def _read(files: Sequence[Path], rate: str | None, progress: Progress, **which: Any) -> tuple[Signals, float]:

@@ -31,7 +31,52 @@ def turns_of(speeds: ArrayLike, rate: float) -> Array:
     return np.concatenate([[0.0], done])
 
 
-def over_angle(signal: ArrayLike, turns: ArrayLike) -> tuple[Array, float]:
+EDGES = 5
+"""Pulses of a tacho, at least."""
+QUANTILES = (0.02, 0.98)
+"""Between which a tacho's low and high level lie …"""
+HYSTERESIS = (0.3, 0.7)
+"""… and shares of their distance: a pulse has come when it was below the one and is above the other."""
+UNEVEN = 1.5
+"""Factor between two pulses beside each other from which on one was missed, or one too many."""
+
+
+def turns_of_pulses(pulses: ArrayLike, per_turn: float = 1.0) -> Array:
+    """Turns at each sample (n,) of a tacho that gives so many pulses in a turn; NaN beyond its pulses.
+
+    A pulse comes where its rising flank crosses the middle between the low and the high level; between pulses
+    the angle grows smoothly (monotone cubic interpolation).
+    """
+    from scipy.interpolate import PchipInterpolator
+
+    values = finite_array("tacho", pulses, "finite numbers", shape=(None,))
+    low, high = np.quantile(values, QUANTILES)
+    low, high = (float(values.min()), float(values.max())) if high <= low else (float(low), float(high))
+    require(high > low, "tacho", "the same number throughout", "pulses", "Is it the column of the tacho?")
+    share = (values - low) / (high - low)
+    state = np.where(share > HYSTERESIS[1], 1, np.where(share < HYSTERESIS[0], -1, 0))
+    marked = np.flatnonzero(state)
+    after = marked[1:][(state[marked[1:]] == 1) & (state[marked[:-1]] == -1)]
+    crossed = []
+    for place in after:  # back to where the flank passes the middle
+        while share[place - 1] >= 0.5:
+            place -= 1
+        crossed.append(place - 1 + (0.5 - share[place - 1]) / (share[place] - share[place - 1]))
+    at = np.array(crossed)
+    require(len(at) >= EDGES, "tacho", count_of(len(at), "pulse"), f"at least {EDGES}")
+    apart = np.diff(at)
+    worst = int(np.argmax(np.abs(np.log(apart[1:] / apart[:-1]))))
+    factor = max(apart[worst + 1] / apart[worst], apart[worst] / apart[worst + 1])
+    received = f"pulses {rounded(factor, 3)} times as far apart as the next, near sample {at[worst + 1]:.0f}"
+    require(factor < UNEVEN, "tacho", received, f"less than {UNEVEN:g} times", "Is one missing, or doubled?")
+    count = np.arange(values.size)
+    turns = np.asarray(
+        PchipInterpolator(at, np.arange(len(at)) / positive("pulses in a turn", per_turn))(count)
+    )
+    return np.where((count >= at[0]) & (count <= at[-1]), turns, np.nan)
+
+
+def over_angle(signal: ArrayLike, turns: ArrayLike, *, per_turn: float | None = None) -> tuple[Array, float]:
     """Values of a signal at equal steps of angle, and how many there are in a turn.
 
     Parameters
@@ -40,6 +85,8 @@ def over_angle(signal: ArrayLike, turns: ArrayLike) -> tuple[Array, float]:
         At equal steps of time.
     turns : array_like (n,)
         At the same times, rising.
+    per_turn : float, optional
+        Values in a turn; by default by the samples where a turn takes longest.
 
     Returns
     -------
@@ -56,9 +103,14 @@ def over_angle(signal: ArrayLike, turns: ArrayLike) -> tuple[Array, float]:
     angle = finite_array("turns", turns, allowed, count=values.size, rising=True)
     whole = float(angle[-1] - angle[0])
     require(whole >= FEWEST_TURNS, "turns", f"{rounded(whole)} of the record", f"{FEWEST_TURNS:g} at least")
-    per_turn = float(np.ceil(FINER / np.diff(angle).min()))
+    per_turn = finest(angle) if per_turn is None else positive("values in a turn", per_turn)
     at = angle[0] + np.arange(int(whole * per_turn) + 1) / per_turn
     return np.asarray(make_interp_spline(angle, values, k=3)(at)), per_turn
+
+
+def finest(turns: Array) -> float:
+    """Values in a turn with which nothing of a signal is folded that has samples at turns (n,)."""
+    return float(np.ceil(FINER / np.diff(turns).min()))
 
 
 def order_spectrum(signal: ArrayLike, turns: ArrayLike) -> Spectrum:

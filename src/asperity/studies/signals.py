@@ -317,6 +317,22 @@ def read_record(
     return Recorded(values, float(rate or 0.0), teller)
 
 
+def read_beside(path: Path, which: str, array: str | None = None) -> tuple[Array, str]:
+    """Read what was recorded beside a signal (n,), and its heading: of a column by number, or an array."""
+    file = guards.readable_file(path)
+    numbered = which.isdecimal()
+    values, titles, _, _ = _recorded(file, array if numbered else which)
+    if not numbered:
+        require(values.ndim == 1, f"{which} in {file.name}", f"shape {values.shape}", "one number a sample")
+        return values, ""
+    count = values.shape[1] if values.ndim == 2 else 1
+    number = int(which)
+    allowed = f"one of 1 to {count}, or the name of an array"
+    require(1 <= number <= count, f"column of the tacho in {file.name}", which, allowed)
+    column = values.reshape(len(values), -1)[:, number - 1]
+    return column, titles[number - 1] if titles else ""
+
+
 def _check_size(values: Array, source: str) -> None:
     """Refuse a signal whose squares no number holds."""
     known = np.isfinite(values)
