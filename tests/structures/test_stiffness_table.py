@@ -196,10 +196,13 @@ def test_a_case_gives_its_bearing_its_load_and_its_damping():
         ("--table k.csv", "load: received none; allowed: a radial or axial load"),
         (
             "--radial '9 N' --damping '2 N s/m'",
-            "--damping: received '2 N s/m'; allowed: --table FILE with it",
+            "--damping: received '2 N s/m'; allowed: --table with it",
         ),
-        ("--radial '9 N' --cage-angle '2 deg'", "--cage-angle: received '2 deg'; allowed: --table FILE"),
-        ("--radial '9 N' --table k.csv -o a.png", "--table: received --signal or a picture with it"),
+        ("--radial '9 N' --cage-angle '2 deg'", "--cage-angle: received '2 deg'; allowed: --table"),
+        (
+            "--radial '9 N' --table k.csv -o a.png",
+            "--table: received a signal, a picture or another",
+        ),
     ],
 )
 def test_what_cannot_be_written_is_told(words, message):

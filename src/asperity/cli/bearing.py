@@ -1,13 +1,14 @@
 """``asperity bearing``: how a ball bearing carries a load, its tones, and which of them its signal holds."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from asperity.case.ball_bearing import BearingKeys, read_bearing
 from asperity.cli.bearing_table import write_table
+from asperity.cli.bearing_tolerances import say_tolerances
 from asperity.cli.heard import heard
 from asperity.diagnostics.decision import NAMES
 from asperity.errors import InputError
@@ -24,7 +25,7 @@ from asperity.written_numbers import rounded
 WIDTH = 122
 TOLD = ("balls", "displacement", "stiffness", "imbalance", "tones", "speed", "speed_is", "tacho", "band",
         "lines", "faults", "confidence", "resolution", "turns", "doubts", "signals", "verdict",
-        "catalogue")  # fmt: skip
+        "catalogue", "tolerances")  # fmt: skip
 """Names of what is said to programs."""
 OPTIONS = ("radial", "axial", "speed", "clearance", "contact_damping")
 """Keys of a bearing and its load that are options, too."""
@@ -43,14 +44,16 @@ def show_bearing(
     *,
     listed: bool = False,
     table: Path | None = None,
+    limits: str | None = None,
     cage_angle: str | None = None,
     load_direction: str | None = None,
+    outer_mass: str | None = None,
     **choices: Any,
 ) -> dict[str, Any]:
     """Print what a bearing does under its load, or what its signals say, and draw it; return the numbers.
 
-    Or list all bearings that have a name, or write its stiffness over load and speed to a table. `more` are
-    signals behind the first one.
+    Or list all bearings that have a name, write the stiffness over load and speed to a `table`, or say how
+    large waves may be for `limits` of the bands. `more` are signals behind the first one.
     """
     options = {name: choices.pop(name, None) for name in OPTIONS}
     if listed:
@@ -60,19 +63,17 @@ def show_bearing(
     if more and not signals:
         received = " and ".join([source, *map(str, more)])
         raise InputError("bearing", received, "one", "Files of signals follow --signal.")
+    for_table = {"cage-angle": cage_angle, "load-direction": load_direction}
+    for_table["damping"] = options["contact_damping"]
+    looks_elsewhere = bool(signals) or picture is not None
+    _refuse_mixed("--table", table, for_table, looks_elsewhere or limits is not None)
+    _refuse_mixed("--limits", limits, {"outer-mass": outer_mass}, looks_elsewhere)
     if table is not None:
-        if signals or picture is not None:
-            raise InputError("--table", "--signal or a picture with it", "loads and speeds alone")
         told = write_table(source, options, table, cage_angle, load_direction)
         return {"bearing": source, **dict.fromkeys(TOLD), **told}
-    alone = {
-        "--cage-angle": cage_angle,
-        "--load-direction": load_direction,
-        "--damping": options["contact_damping"],
-    }
-    for name, given in alone.items():
-        if given is not None:
-            raise InputError(name, f"'{given}'", "--table FILE with it")
+    if limits is not None:
+        waves = say_tolerances(source, options, limits, outer_mass)
+        return {"bearing": source, **dict.fromkeys(TOLD), "tolerances": waves}
     keys = read_bearing(source, options)
     of = keys.bearing
     name = keys.name or source
@@ -88,6 +89,15 @@ def show_bearing(
     if picture is not None:
         told["files"] = {"picture": picture}
     return {"bearing": name, **dict.fromkeys(TOLD), **told}
+
+
+def _refuse_mixed(name: str, given: object, belonging: Mapping[str, object], looks_elsewhere: bool) -> None:
+    """Refuse an option beside others that it leaves no room for, and what belongs to it without it."""
+    alone = [(option, value) for option, value in belonging.items() if value is not None]
+    if given is None and alone:
+        raise InputError(f"--{alone[0][0]}", f"'{alone[0][1]}'", f"{name} with it")
+    if given is not None and looks_elsewhere:
+        raise InputError(name, "a signal, a picture or another table with it", "load and speed alone")
 
 
 def _listed() -> dict[str, Any]:

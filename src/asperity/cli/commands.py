@@ -411,6 +411,13 @@ BEARING = [
     click.Option(
         ["--load-direction"], help="Of the radial load from x towards y, for --table, as '-90 deg'."
     ),
+    click.Option(
+        ["--limits"],
+        metavar="VELOCITIES",
+        help="Largest rms radial velocities in the bands of ISO 15242, as '50 um/s, 30 um/s, none': list how "
+        "large each wave of each part may be alone.",
+    ),
+    click.Option(["--outer-mass"], help="Of the free outer ring, for --limits, as '60 g'."),
     click.Option(["--list", "listed"], is_flag=True, help="List all NAMEs, and where they are printed."),
 ]
 """What a bearing carries, and where its signal is."""

@@ -1,0 +1,75 @@
+"""``asperity bearing --limits``: how large each wave of each part may be alone, for limits of the bands."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import asdict
+from typing import Any
+
+from asperity.case.ball_bearing import read_bearing
+from asperity.diagnostics import ISO_BANDS
+from asperity.diagnostics.decision import NAMES
+from asperity.errors import InputError
+from asperity.structures.waviness_tolerance import BELOW, WaveTolerance, ring_frequency, wave_tolerances
+from asperity.terminal import say, say_table
+from asperity.units import quantity
+from asperity.written_numbers import rounded
+
+MOST = 100
+"""Waves per turn up to which they are told: shorter ones are ground, and measured, as roughness."""
+WIDTH = 110
+ALLOWED = "three velocities with units, or none, as '50 um/s, 30 um/s, none'"
+
+
+def say_tolerances(source: str, options: Mapping[str, Any], limits: str, outer_mass: str | None) -> list[Any]:
+    """Print the amplitude of each wave that makes the limit of its band alone; return them for programs."""
+    velocities = _limits(limits)
+    keys = read_bearing(source, options)
+    if not keys.speed:
+        raise InputError("speed", "none", "a speed greater than 0", "Give it, as in --speed '1800 1/min'.")
+    found = keys.bearing.loaded(keys.radial, keys.axial, speed=keys.speed)
+    highest = math.inf
+    if outer_mass is not None:
+        highest = BELOW * ring_frequency(found, quantity(outer_mass, "kg"))
+    every = wave_tolerances(keys.bearing, found, keys.speed, velocities, ISO_BANDS, highest=highest)
+    told = [each for each in every if each.order <= MOST and math.isfinite(each.amplitude)]
+    title = f"Largest amplitude of one wave that keeps its band within {limits}, all else perfect"
+    head = ["of", "waves per turn", "tones / Hz", "band / Hz", "µm/s for 1 µm", "amplitude / nm"]
+    say_table(title, head, map(_row, told), width=WIDTH)
+    say(
+        f"Waves of up to {MOST} per turn that move the outer ring radially; all others may be larger. "
+        "Energies of several add: of ten that are alike each may have a third. Amplitudes are normal to the "
+        "surface; of a ball, of one of them."
+    )
+    beyond = "beyond half the frequency at which it moves on its balls it does not"
+    if outer_mass is None:
+        say(f"The outer ring follows its balls: {beyond}. With its --outer-mass those are left out.")
+    else:
+        say(f"The outer ring follows its balls up to {rounded(highest, 3)} Hz: {beyond}.")
+    return [{**asdict(each), "tones": list(each.tones), "band": list(each.band)} for each in told]
+
+
+def _row(each: WaveTolerance) -> list[str]:
+    tones = ", ".join(f"{tone:.4g}" for tone in each.tones)
+    band = f"{each.band[0]:g} to {each.band[1]:g}"
+    return [
+        NAMES[each.part],
+        f"{each.order}",
+        tones,
+        band,
+        rounded(each.velocity),
+        rounded(1e9 * each.amplitude),
+    ]
+
+
+def _limits(text: str) -> list[float]:
+    """Limits of the three bands, m/s; infinite where there is none."""
+    words = [word.strip() for word in text.split(",")]
+    if len(words) != len(ISO_BANDS):
+        raise InputError("--limits", f"'{text}'", ALLOWED)
+    try:
+        found = [math.inf if word == "none" else quantity(word, "m/s") for word in words]
+    except InputError as error:
+        raise error.about("--limits") from None
+    if not all(each > 0.0 for each in found):
+        raise InputError("--limits", f"'{text}'", f"{ALLOWED}, greater than 0")
+    return found
