@@ -17,6 +17,7 @@ from asperity.files import write_bytes
 from asperity.laws import Law
 from asperity.laws.layout import force
 from asperity.results import save, variable
+from asperity.written_numbers import count_of
 
 if TYPE_CHECKING:
     from xarray import DataArray
@@ -83,8 +84,8 @@ def force_map(
 
     along = _rising("positions (m)", positions)
     across = _rising("approaches (m)", approaches)
-    allowed = f"at most {MOST} of both together"
-    require(along.size * across.size <= MOST, "map", f"{along.size * across.size} forces", allowed)
+    count = along.size * across.size
+    require(count <= MOST, "map", count_of(count, "force"), f"at most {MOST} of both together")
     told = ""
     if isinstance(contact, AnyCase | Mapping | str | os.PathLike):
         case = as_case(contact)
