@@ -24,6 +24,7 @@ from asperity.scenes.bearing import heard_group
 from asperity.scenes.bearing_validity import out_of_place
 from asperity.scenes.computed_bearing import bearing_rings, cage_slip, compute_bearing, thinned
 from asperity.scenes.figures.bearing import load_zone
+from asperity.scenes.report import page_of
 from asperity.schema import bearing as schema
 from asperity.schema import spectra
 from command_line import program
@@ -342,6 +343,28 @@ def test_forces_of_a_bearing_stand_by_contact_each_a_ball_on_a_ring(runs, tmp_pa
     asperity.save(again, path)
     with pytest.raises(InputError, match="a damaged file"):
         asperity.open_result(path)
+
+
+def test_balls_slide_in_their_grooves_without_spin_under_a_radial_load(runs):
+    """Heat by the groove alone is 0.161 Q a² κ V/R_x, at the speed of a ball on the outer raceway."""
+    tree = runs(BEARING)
+    found = group(tree)
+    of = B6205
+    load, across = found["ball_load"].values, found["semi_axis_across"].values
+    between = (load > 0.0).all(axis=0)
+    assert 0 < between.sum() < between.size
+    spin, rim, heat = (found[name].values for name in ("spin_creepage", "rim_creepage", "sliding_heat"))
+    for each in (spin, rim, heat):
+        np.testing.assert_array_equal(np.isfinite(each), np.broadcast_to(between, each.shape))
+    np.testing.assert_allclose(spin[:, between], 0.0, atol=1e-6)
+    speed = 2.0 * np.pi * OUTER / BALLS * 0.5 * (PITCH + D)
+    curvature = 0.5 * (2.0 / D + 1.0 / (0.52 * D))
+    for row, contact in enumerate((of.inner_contact, of.outer_contact)):
+        at_rim = across[row] ** 2 * curvature / (2.0 * contact.radius_x)
+        expected = 0.16114 * load[row] * at_rim * speed
+        np.testing.assert_allclose(heat[row][between], expected[between], rtol=3e-3)
+        np.testing.assert_allclose(rim[row][between], (1.0 - 0.3473**2) * at_rim[between], rtol=1e-4)
+    assert "Sliding of the balls" in page_of(tree)
 
 
 def test_no_force_is_written_below_zero_where_a_ball_leaves_the_ring(runs):

@@ -57,7 +57,12 @@ CHAPTERS = (
         bearing.bearing_answers,
     ),
     Chapter("run_up", "Its run-up", run_up.RUN_UP),
-    Chapter("load", "How it carries its load", (bearing.ball_turn,), (bearing.ball_contacts_table,)),
+    Chapter(
+        "load",
+        "How it carries its load",
+        (bearing.ball_turn,),
+        (bearing.ball_contacts_table, bearing.ball_sliding_table),
+    ),
     Chapter(
         "noise",
         "Rolling noise",

@@ -32,6 +32,25 @@ SEMI_AXIS_ALONG, SEMI_AXIS_ACROSS = (
     _bearing(f"semi_axis_{way}(ring, cage_angle, ball)", "m", f"semi-axis of a contact {way} its raceway")
     for way in ("along", "across")
 )
+_BETWEEN = "balls that do not touch both rings are not rolled by them"
+SPIN_CREEPAGE = _bearing(
+    "spin_creepage(ring, cage_angle, ball)",
+    "rad/m",
+    "turning of a ball against a raceway about their normal over the speed of rolling",
+    missing=_BETWEEN,
+)
+RIM_CREEPAGE = _bearing(
+    "rim_creepage(ring, cage_angle, ball)",
+    "1",
+    "creepage by the form of the groove at the rim of a contact across",
+    missing=_BETWEEN,
+)
+SLIDING_HEAT = _bearing(
+    "sliding_heat(ring, cage_angle, ball)",
+    "W",
+    "heat of a contact over its coefficient of friction, if all of it slips",
+    missing=_BETWEEN,
+)
 RING_DISPLACEMENT = _bearing(
     "ring_displacement(direction, cage_angle)", "m", "static displacement of the inner ring"
 )

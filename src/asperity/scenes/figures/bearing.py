@@ -372,6 +372,29 @@ def ball_contacts_table(tree: DataTree) -> ReportTable:
     return table("ball_contacts", "Contacts of the balls", columns, note)
 
 
+def ball_sliding_table(tree: DataTree) -> ReportTable:
+    """How each ball slides on its raceways at rest."""
+    degrees = _degrees(data.values(tree, bearing.AZIMUTH)[0])
+    columns = {"ball at": number_cells(np.round(degrees) + 0.0, "{:.0f}°")}
+    shown = (
+        (bearing.SPIN_CREEPAGE, "spin, rad/m", 1.0),
+        (bearing.RIM_CREEPAGE, "at the rim, %", 0.01),
+        (bearing.SLIDING_HEAT, "heat, W", 1.0),
+    )
+    for row, ring in enumerate(data.words(tree, bearing.RING)):
+        for entry, words, size in shown:
+            columns[f"{ring}, {words}"] = number_cells(data.values(tree, entry)[row, 0] / size, in_digits(3))
+    every = np.nansum(data.values(tree, bearing.SLIDING_HEAT), axis=(0, 2)).mean()
+    note = (
+        "Under the static load, the first ball below it. Spin against a raceway is that of the ring alone "
+        "which does not control the axis of the ball. By the form of its groove a ball slides across the "
+        "contact: at the rim, over the speed of rolling. The heat is that over the coefficient of friction "
+        f"if all of the contact slips, the most there is: {rounded(every)} W for all contacts together. "
+        "Balls that do not touch both rings are left out."
+    )
+    return table("ball_sliding", "Sliding of the balls", columns, note)
+
+
 def bearing_answers(tree: DataTree) -> Answers:
     """How quiet the bearing is, in three bands, and which part makes it so."""
     velocities = data.of_law(tree, bearing.BAND_VELOCITY, _main(tree))[0]

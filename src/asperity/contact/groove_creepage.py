@@ -1,0 +1,110 @@
+"""Creepage of a ball that rolls in a groove: by the groove's form across (Heathcote), and by spin."""
+
+import math
+
+import numpy as np
+
+from asperity.arguments import Array, ArrayLike
+
+PURE_ROLLING = 2.0 * math.sin(math.pi / 18.0)
+"""Place across where a ball in a groove rolls purely, over the half axis: 0.347.
+
+Where all else slips and no force drives the ball, the load between both lines is half of the whole:
+t − t³/3 = 1/3. K. L. Johnson, Contact Mechanics (1985), section 8.5, prints 0.35.
+"""
+RADII, ANGLES = 24, 96
+"""Places in a contact over which sliding is summed, along a radius of the ellipse and around it."""
+
+
+def contact_curvature(ball_radius: float, groove_radius: float) -> float:
+    """Curvature across of the surface that a ball and its groove share, 1/m: the mean of both.
+
+    T. A. Harris and M. N. Kotzalas, Advanced Concepts of Bearing Technology (2007): R = 2 r D/(2 r + D).
+    """
+    return 0.5 * (1.0 / ball_radius + 1.0 / groove_radius)
+
+
+def conformal_creepage(across: ArrayLike, half_axis: ArrayLike, curvature: float, along: float) -> Array:
+    """Creepage of a ball by the form of its groove, at places across a contact.
+
+    Parameters
+    ----------
+    across : array_like (...)
+        Places y from the middle of the contact, m.
+    half_axis : array_like (...)
+        Half axis a of the contact across, m.
+    curvature : float
+        Of the surface that both share across, 1/m, see `contact_curvature`.
+    along : float
+        Relative radius R_x of ball and raceway along, m: 1/R_x = 1/R ± 1/R_r.
+
+    Returns
+    -------
+    ndarray (...)
+        Velocity of the ball less that of the raceway over that of rolling, ξ = (y₀² − y²) κ/2R_x, with the
+        lines of pure rolling at y₀ = `PURE_ROLLING` a: the middle of a ball runs ahead, its sides lag.
+    """
+    y, a = np.broadcast_arrays(np.asarray(across, dtype=float), np.asarray(half_axis, dtype=float))
+    return np.asarray(((PURE_ROLLING * a) ** 2 - y**2) * curvature / (2.0 * along))
+
+
+def spin_moment(load: ArrayLike, half_axes: tuple[ArrayLike, ArrayLike]) -> Array:
+    """Moment of friction of a contact that spins about its normal, over the coefficient of friction, N m.
+
+    Parameters
+    ----------
+    load : array_like (...)
+        Q, N.
+    half_axes : (array_like, array_like)
+        Along and across (...), m.
+
+    Returns
+    -------
+    ndarray (...)
+        (3/8) Q a E, with the larger half axis a and the complete elliptic integral of the second kind E.
+    """
+    from scipy.special import ellipe
+
+    b, a = np.sort(np.broadcast_arrays(*half_axes), axis=0)
+    slender = 1.0 - (b / np.where(a > 0.0, a, 1.0)) ** 2
+    return np.asarray(0.375 * np.asarray(load, dtype=float) * a * ellipe(slender))
+
+
+def sliding_speed(
+    load: ArrayLike,
+    half_axes: tuple[ArrayLike, ArrayLike],
+    spin: ArrayLike,
+    curvature: float,
+    along: float,
+) -> Array:
+    """Pressure times sliding, summed over a contact that slips everywhere, over the speed of rolling, N.
+
+    Times speed and coefficient of friction it is the most heat that friction can make in steady rolling: no
+    traction does more work on a rigid slip, and what is elastic adds none over the contact.
+
+    Parameters
+    ----------
+    load : array_like (...)
+        N.
+    half_axes : (array_like, array_like)
+        Along and across (...), m.
+    spin : array_like (...)
+        Spin creepage, rad/m.
+    curvature, along : float
+        As in `conformal_creepage`.
+
+    Returns
+    -------
+    ndarray (...)
+        ∫ p |s| dA over Hertz's pressure p, with the creepage s = (ξ(y) − φ y, φ x).
+    """
+    Q, b, a, phi = np.broadcast_arrays(load, *half_axes, spin)
+    depth, weights = np.polynomial.legendre.leggauss(RADII)
+    depth, weights = 0.5 * (depth + 1.0), 0.5 * weights  # sqrt(1 − ρ²), of which ρ dρ is linear
+    around = 2.0 * np.pi * (np.arange(ANGLES) + 0.5) / ANGLES
+    radius = np.sqrt(1.0 - depth**2)[:, None]
+    x = b[..., None, None] * radius * np.cos(around)
+    y = a[..., None, None] * radius * np.sin(around)
+    lengthwise = conformal_creepage(y, a[..., None, None], curvature, along) - phi[..., None, None] * y
+    slip = np.hypot(lengthwise, phi[..., None, None] * x).mean(axis=-1)
+    return np.asarray(3.0 * Q * (slip @ (weights * depth**2)))
