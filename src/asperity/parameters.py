@@ -39,6 +39,9 @@ _WORDS = {
     "rad": ("an angle", "30 deg"),
     "rad/m": ("an angle per length", "0.1 rad/m"),
     "m^3/J": ("a wear rate", "7e-4 mm^3/J"),
+    "m^2/s": ("a kinematic viscosity", "68 mm^2/s"),
+    "degC": ("a temperature", "70 degC"),
+    "Pa^-1": ("a pressure-viscosity coefficient", "20 GPa^-1"),
 }
 
 _MEANT = {"rad": "deg", "m/s": "km/h"}
@@ -46,8 +49,6 @@ _MEANT = {"rad": "deg", "m/s": "km/h"}
 
 LEAST, MOST = 1e-30, 1e30
 """Numbers in SI lie between these: nothing in mechanics is outside, and ten multiplied are finite."""
-
-EMPTY = "Add to it, or remove the key."
 
 
 @dataclass(frozen=True)
@@ -381,7 +382,8 @@ class ListOf(ValueKind):
             self.refuse(value)
         if len(value) < self.least:
             received = count_of(len(value), "value") if len(value) else "an empty list"
-            raise InputError("value", received, f"at least {self.least}, each {self.each.allowed}", EMPTY)
+            remedy = "Add to it, or remove the key."
+            raise InputError("value", received, f"at least {self.least}, each {self.each.allowed}", remedy)
         read, errors = [], []
         for number, item in enumerate(value, 1):
             try:

@@ -25,6 +25,8 @@ LEAST_NUMBER, MOST_NUMBER = 1e-3, 1e5
 _PREFIXES = {"n": 1e-9, "u": 1e-6, "µ": 1e-6, "m": 1e-3, "k": 1e3, "M": 1e6, "G": 1e9}
 _TURNS = ("1/min", "rpm", "r/min", "min^-1", "min⁻¹")
 """Turns, where Hz are meant."""
+_CELSIUS = ("degC", "°C", "celsius")
+"""Names of the scale of temperatures."""
 
 
 _WRITTEN = (
@@ -37,7 +39,7 @@ _WRITTEN = (
 def factor(unit: str, dimension: str) -> float:
     """SI value of one unit, as ``"um"``, ``"µm"``, ``"N s/m"``, compatible with an SI unit, as ``"m"``.
 
-    As dimension ``"dB"`` allows ``"dB"`` alone.
+    As dimension ``"dB"`` allows ``"dB"`` alone, ``"degC"`` degrees Celsius alone.
     """
     unit = unit.strip()
     if unit == dimension:
@@ -47,6 +49,10 @@ def factor(unit: str, dimension: str) -> float:
     allowed = f"a unit that converts to {dimension}" if dimension else "no unit"
     if "dB" in (unit, dimension):  # a level is not a multiple of a physical unit
         raise InputError("unit", repr(unit), allowed, f"Write the quantity as in '1 {dimension}'.")
+    if dimension == "degC":  # its zero is none of K, and differences are not meant
+        if unit in _CELSIUS:
+            return 1.0
+        raise InputError("unit", repr(unit), '"degC"', "Write degrees Celsius, as in '70 degC'.")
     misread = unit.lower().endswith(("mph", "kph")) and len(unit) > 3  # "kmph" is no thousand miles per hour
     remedy = "Write names, '/', '*' and powers, as in 'kg/m^3'."
     if len(unit) <= _LONGEST and not misread and _UNIT.fullmatch(unit):

@@ -17,6 +17,7 @@ from asperity.case import toml
 from asperity.case.any_case import LAW, AnyCase
 from asperity.case.body import DAMPING
 from asperity.case.form import Numbers, Section, name_of, section
+from asperity.case.lubricant import LubricantKeys, Oiled
 from asperity.case.measured_tables import MeasuredBearingKeys
 from asperity.case.ready_lists import IN_BEARINGS, NamedChanges, listed_changes
 from asperity.case.sections import DURATION, DURATION_OR_ZERO
@@ -295,7 +296,7 @@ class FaultKeys(Section, parameters=_keys_of(Fault)):
         yield from _refused(lambda: self.fault)
 
 
-class BearingUnderLoad(AnyCase):
+class BearingUnderLoad(Oiled, AnyCase):
     """A ball bearing runs under a constant load.
 
     Numbers are in SI, or text with its unit. ``asperity new ball-bearing`` writes these keys as a case file.
@@ -373,7 +374,7 @@ class BearingUnderLoad(AnyCase):
         "the most impulsive one",
         "1 Hz to 500 kHz: bearings ring between",
     )
-    contact_damping: float = key(DAMPING, "20 N s/m", "damping of each contact", _DAMPED)
+    contact_damping: float = key(DAMPING, "20 N s/m", "damping of each contact without oil", _DAMPED)
     centrifugal: bool = key(Flag(), True, "whether balls press the outer ring as they go round")
     cage_slip: tuple[float, ...] = key(
         _SLIPS, [0.0, 0.0], "least and largest share by which the cage lags, drawn anew at each turn"
@@ -388,6 +389,7 @@ class BearingUnderLoad(AnyCase):
         axial_stiffness="0 N/m",
     )
 
+    lubricant: LubricantKeys = section(LubricantKeys, "the oil: a film in each contact, dry without it")
     inner_raceway: AroundKeys = section(AroundKeys, "what is on the inner raceway all around")
     outer_raceway: AroundKeys = section(AroundKeys, "what is on the outer raceway all around")
     balls: AroundKeys = section(AroundKeys, "what is on each ball all around")
@@ -547,6 +549,7 @@ class BearingUnderLoad(AnyCase):
                 f"less than {rounded(60.0 * leaving, 5)} 1/min, or a larger axial load or bearing.preload"
             )
             yield InputError("speed", received, allowed)
+        yield from self.problems_of_films()
         balls = self.bearing.bearing.balls
         for name, fault in self.faults.items():
             if fault.on is None:

@@ -133,6 +133,10 @@ class RollerBearingUnderLoad(BearingUnderLoad):
             remedy = "Its force on rollers is that of slices; the others are made for the ellipse of a ball."
             yield InputError("laws", ", ".join(others), f'"{BY_SLICES}"', remedy)
             return
+        if self.lubricant.found is not None:
+            remedy = "In Python asperity.contact.film.line_film has films of rollers."
+            yield InputError("lubricant", "an oil", "none: only contacts of balls have a film", remedy)
+            return
         if self.axial > 0.0 and self.bearing.bearing.contact_angle == 0.0:
             remedy = "Rollers slide along such raceways, and ribs are not in it. Give a contact_angle."
             allowed = "0 N where bearing.contact_angle is 0"

@@ -17,6 +17,7 @@ from asperity.progress import Progress
 from asperity.scenarios import compiling, preparing, reducing, run_time
 from asperity.scenarios.doubts import doubt_bearing
 from asperity.scenarios.problems import refuse
+from asperity.scenarios.raceway_films import films_on
 from asperity.scenarios.raceway_laws import OnRaceway
 from asperity.scenarios.raceway_limits import doubt_fault, doubt_surface
 from asperity.scenarios.roller_raceways import on_surface, surface_on
@@ -39,6 +40,10 @@ ON = {
 LEFT_OUT = (
     "There is no film of lubricant, no friction, no shoulder of a groove, and no tilt of a ring; the contact "
     "angle is that of the static load."
+)
+OILED = (
+    "Contacts are full of oil; there is no friction, no shoulder of a groove, and no tilt of a ring; contact "
+    "angle and static loads are those without oil."
 )
 STEP_TIME, SOLUTION_TIME = 2.0e-6, 1e-3
 """Processor times of a step of one ball with its record and spectra, and of a contact of a scan, s."""
@@ -119,18 +124,16 @@ def raceways_of(prepared: PreparedBearing, progress: Progress | None) -> list[On
     """What a ball feels of the inner and the outer raceway, and their scans."""
     case = prepared.case
     of = prepared.case.bearing.bearing
-    turning = prepared.case.kinematics
-    passing = [2.0 * np.pi * abs(turning.cage - ring) for ring in (turning.inner, turning.outer)]
     share = slowest(case.speed) / case.speed
-    each = zip(case.contacts, prepared.raceways, of.raceway_radii, passing, strict=True)
+    each = zip(case.contacts, prepared.raceways, case.dampings, case.passing_speeds, strict=True)
     return [
         on_surface(
-            smooth, surface, load, damping=case.contact_damping, hardness=of.hardness,
+            smooth, surface, load, damping=damping, hardness=of.hardness,
             cache=Store(), progress=progress,
-            shortest=radius * share * pace / case.highest_frequency,
+            shortest=share * speed / case.highest_frequency,
             parameters={law: case.law_parameters(law) for law in case.laws},
         )
-        for (smooth, load), surface, radius, pace in each
+        for (smooth, load), surface, damping, speed in each
     ]  # fmt: skip
 
 
@@ -188,11 +191,41 @@ def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], preparin
         ),
         ("runs", f"{', '.join(case.laws)}, and {runs - len(case.laws)} by areal with parts alone"),
         *((f"contact solutions, {name}", f"at most {count}") for name, count in solutions.items()),
-        ("not in it", LEFT_OUT),
+        *films_in_words(prepared),
+        ("not in it", omitted_from(case)),
     ]
     if case.rotating:
         rows.insert(1, ("load that turns", f"{in_newtons(case.rotating)}, once in {1e3 / case.speed:.4g} ms"))
     return rows, preparing.Work({}, solutions, steps, None, taken, pace * compiling.time_to_compile())
+
+
+def films_in_words(prepared: PreparedBearing) -> list[tuple[str, str]]:
+    """How thick films are, what they leave to asperities, what is outside of their fit; none without oil."""
+    case = prepared.case
+    found = films_on(case, prepared.raceways, prepared.balls)
+    if not found:
+        return []
+    oil = found[0].film
+    rows = [
+        (
+            "oil",
+            f"{rounded(1e3 * oil.viscosity)} mPa s at {case.lubricant.temperature:g} °C, pressure-viscosity "
+            f"coefficient {rounded(1e9 * oil.pressure_viscosity)} 1/GPa",
+        )
+    ]
+    rows += [
+        (f"film, {ring} ring, {in_newtons(each.load)}", each.in_words)
+        for ring, each in zip(RINGS, found, strict=True)
+    ]
+    outside = [f"{ring} ring: {', '.join(each.outside)}" for ring, each in zip(RINGS, found, strict=True)]
+    if any(each.outside for each in found):
+        rows.append(("film outside of its fit", "; ".join(outside)))
+    return rows
+
+
+def omitted_from(case: BearingUnderLoad) -> str:
+    """What is not in the computation of a bearing, with oil or without."""
+    return LEFT_OUT if case.films is None else OILED
 
 
 def _cells_over_faults(prepared: PreparedBearing) -> float:

@@ -25,6 +25,7 @@ from asperity.scenarios.prepared_bearing import (
     RINGS,
     PreparedBearing,
     bearing_parts,
+    omitted_from,
     prepare_bearing,
 )
 from asperity.scenes.bearing_validity import bearing_findings
@@ -83,7 +84,7 @@ def bearing_result(
     numerics = (*_numerics(case, time.monotonic() - began), *seen.numerics)
     scenario = scenario_group(case, numerics)
     scenario[contact.VALIDITY] = [finding.row() for finding in found]
-    at_rest = static_group(case.static, case.kinematics)
+    at_rest = static_group(case.static, case.kinematics, omitted_from(case))
     laid_out = scenario | at_rest | motion_group(computed) | heard | seen.values | apart
     result = bearing.with_ring_forces(tree(laid_out))
     result.attrs = root_attributes(
@@ -107,7 +108,7 @@ def _draws(case: BearingUnderLoad) -> Iterator[tuple[str, str, float]]:
 # --- at rest
 
 
-def static_group(found: LoadedBearing, turning: Kinematics) -> Values:
+def static_group(found: LoadedBearing, turning: Kinematics, omitted: str = LEFT_OUT) -> Values:
     """Lay out how a bearing carries its load, and what turns how fast."""
     of = found.bearing
     along, across = np.transpose([found.semi_axes(ring) for ring in RINGS], (1, 0, 2, 3))
@@ -131,7 +132,7 @@ def static_group(found: LoadedBearing, turning: Kinematics) -> Values:
         bearing.BALL_DIAMETER: of.ball_diameter,
         bearing.PITCH_DIAMETER: of.pitch_diameter,
         bearing.CONTACT_ANGLE: found.contact_angle,
-        bearing.LEFT_OUT: LEFT_OUT,
+        bearing.LEFT_OUT: omitted,
         **tones_group(turning),
     }
 
@@ -280,7 +281,7 @@ def _verdict(case: BearingUnderLoad, heard: Values, deciding: Sequence[str]) -> 
     if not np.nan_to_num(velocities).any() and told:
         lead = f"Nothing vibrates by {law}: all balls are carried alike, on surfaces without waves"
     struck = f" Its envelope has lines of {f'the {parts}' if parts else 'no part'}." if case.faults else ""
-    return f"{lead}.{struck} {LEFT_OUT}"
+    return f"{lead}.{struck} {omitted_from(case)}"
 
 
 # --- which part makes it so

@@ -12,6 +12,7 @@ import numpy as np
 from asperity.arguments import Array
 from asperity.case.ball_bearing import BearingUnderLoad
 from asperity.laws import Need, spec_of
+from asperity.laws.film import WithFilm
 from asperity.progress import Progress
 from asperity.rolling.bearing import BearingRings, RolledBearing, Sensor, roll_bearing
 from asperity.scenarios.prepared_bearing import RINGS, PreparedBearing, raceways_of
@@ -83,7 +84,7 @@ def compute_bearing(prepared: PreparedBearing, progress: Progress) -> ComputedBe
         )  # fmt: skip
 
     def looking_up(law: str, scanned: Sequence[ScannedRaceway], share: float) -> RolledBearing:
-        inner, outer = (each.raceway.build(law, each.states) for each in scanned)
+        inner, outer = oiled(case, [each.raceway.build(law, each.states) for each in scanned])
         return once(law, inner, outer, share)
 
     loads = case.static.inner_load, case.static.outer_load
@@ -98,7 +99,8 @@ def compute_bearing(prepared: PreparedBearing, progress: Progress) -> ComputedBe
         if name in looked_up:
             run, scanned = within_scan(partial(looking_up, name), scanned, _visited, TRIED)
         else:
-            run = once(name, *(of[name] for of in laws_of))
+            inner, outer = oiled(case, [of[name] for of in laws_of])
+            run = once(name, inner, outer)
         every = case.steps_per_sample
         signals: dict[str, Any] = {each: thinned(getattr(run, each), every) for each in SIGNALS}
         signals |= {each: np.maximum(signals[each], getattr(run, each).min()) for each in FORCES}
@@ -125,6 +127,14 @@ class ScannedRaceway:
 def _visited(run: RolledBearing) -> list[tuple[float, float]]:
     """Least and largest force of the springs of contacts, N, on the inner and on the outer raceway."""
     return [((1.0 - DAMPED) * least, (1.0 + DAMPED) * most) for least, most in run.reached]
+
+
+def oiled(case: BearingUnderLoad, dry: Sequence[Any]) -> Sequence[Any]:
+    """Laws of the contacts with the inner and the outer ring with their films, if there is oil."""
+    if case.films is None:
+        return dry
+    loads = (load for _, load in case.contacts)
+    return [WithFilm(law, film, load) for law, film, load in zip(dry, case.films, loads, strict=True)]
 
 
 def bearing_rings(case: BearingUnderLoad) -> BearingRings:

@@ -1,6 +1,15 @@
 """What is looked at in runs of this program, one file each, in the order in which results lay it out."""
 
-from asperity.scenes import bearing_creepage, bearing_levels, creep, roundness, run_up, sideways, track
+from asperity.scenes import (
+    bearing_creepage,
+    bearing_film,
+    bearing_levels,
+    creep,
+    roundness,
+    run_up,
+    sideways,
+    track,
+)
 
 OVER_STRUCTURES = (
     roundness.OBSERVER,
@@ -11,5 +20,5 @@ OVER_STRUCTURES = (
     creep.OBSERVER,
 )
 """Of bodies that roll over structures."""
-OF_BEARINGS = (bearing_levels.OBSERVER, bearing_creepage.OBSERVER, run_up.OBSERVER)
+OF_BEARINGS = (bearing_levels.OBSERVER, bearing_film.OBSERVER, bearing_creepage.OBSERVER, run_up.OBSERVER)
 """Of ball bearings."""

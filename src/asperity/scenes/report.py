@@ -60,8 +60,8 @@ CHAPTERS = (
     Chapter(
         "load",
         "How it carries its load",
-        (bearing.ball_turn,),
-        (bearing.ball_contacts_table, bearing.ball_sliding_table),
+        (bearing.ball_turn, bearing.ball_films),
+        (bearing.ball_contacts_table, bearing.films_table, bearing.ball_sliding_table),
     ),
     Chapter(
         "noise",

@@ -62,6 +62,33 @@ PITCH_DIAMETER = _fact("pitch_diameter", "m", "diameter of the circle of the bal
 CONTACT_ANGLE = _fact("contact_angle", "rad", "contact angle of the run, mean of the static ones")
 LEFT_OUT = _fact("left_out", "text", "what is not in the computation")
 
+# --- its oil
+
+OILED = "of a ball bearing with oil"
+_film = partial(Entry, "bearing", condition=OILED)
+_oil = partial(Attribute, "bearing", condition=OILED)
+_IDLE = "balls that carry nothing have no contact for a film"
+_SMOOTH = "both surfaces are smooth"
+FILM_THICKNESS = _film(
+    "film_thickness(ring, cage_angle, ball)", "m", "film in the middle of a contact", missing=_IDLE
+)
+LEAST_FILM = _film("least_film(ring, cage_angle, ball)", "m", "least film of a contact", missing=_IDLE)
+FILM_PARAMETER = _film(
+    "film_parameter(ring, cage_angle, ball)", "1", "least film over the rms of both surfaces",
+    missing=f"{_IDLE}, or {_SMOOTH}"
+)  # fmt: skip
+HEAVIEST_FILM = _film("heaviest_film(ring)", "m", "film in the middle under the heaviest load")
+HEAVIEST_PARAMETER = _film(
+    "heaviest_film_parameter(ring)", "1", "film parameter under the heaviest load", missing=_SMOOTH
+)
+FILM_RMS = _film("film_roughness(ring)", "m", "rms of both surfaces together within a contact")
+FILM_STIFFNESS = _film("film_stiffness(ring)", "N/m", "stiffness of a contact with its film, heaviest load")
+FILM_DAMPING = _film("film_damping(ring)", "N s/m", "damping of a contact with its film")
+FILM_HEATING = _film("film_heating(ring)", "1", "share of the film that the heating of the inlet leaves")
+ASPERITY_SHARE = _film("asperity_share(ring)", "1", "share of the heaviest load that asperities carry")
+OIL_VISCOSITY = _oil("oil_viscosity", "Pa s", "viscosity of the oil at its temperature, without pressure")
+OIL_PRESSURE = _oil("oil_pressure_viscosity", "1/Pa", "its pressure-viscosity coefficient")
+
 # --- what turns how fast
 
 _PART = "part of the bearing: outer or inner raceway, or ball"
@@ -184,6 +211,8 @@ UNEXPLAINED = Attribute("bearing", "unexplained", "dB", "rms of what the two lea
 
 FIRST = {"harmonic": 1}
 KEPT: dict[Entry, dict[str, int]] = {
+    HEAVIEST_FILM: {},
+    HEAVIEST_PARAMETER: {},
     BAND_VELOCITY: {},
     BAND_DEVIATION: {},
     ACCELERATION_LEVEL: {},

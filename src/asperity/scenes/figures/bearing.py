@@ -26,6 +26,8 @@ PER_OCTAVE = 96
 LOWEST = 10.0
 """Hz, from which spectra are drawn."""
 NAMES = {"outer": "outer raceway", "inner": "inner raceway", "ball": "balls"}
+FULL_FILM = 3.0
+"""Film parameter from which on surfaces do not touch."""
 RINGS = {"inner": (chart.VERMILLION, ()), "outer": (chart.BLUE, (5.0, 1.5))}
 """Looks of lines of the contacts with each ring."""
 COLOURS = {"outer": chart.BLUE, "inner": chart.VERMILLION, "ball": chart.GREEN}
@@ -168,6 +170,75 @@ def ball_turn(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
         "Contact forces of the first ball by the main law in its last turn, over the load that it has at "
         "rest."
     )
+
+
+@figure(
+    "Films of oil",
+    Of(bearing.BALL),
+    Of(bearing.AZIMUTH),
+    Of(bearing.FILM_THICKNESS, "{ring} ring, in the middle"),
+    Of(bearing.LEAST_FILM, "{ring} ring, at the sides"),
+)
+def ball_films(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
+    """Films of all contacts at rest over the azimuth, and three times the roughness that they are to hide."""
+    places = _degrees(data.values(tree, bearing.AZIMUTH).ravel())
+    order = np.argsort(places)
+    drawn: list[chart.Mark] = []
+    rms = 1e9 * data.values(tree, bearing.FILM_RMS)
+    told = []
+    for row, ring in enumerate(data.words(tree, bearing.RING)):
+        colour, dashes = RINGS[ring]
+        for entry, place, width in (
+            (bearing.FILM_THICKNESS, "in the middle", 2.0),
+            (bearing.LEAST_FILM, "at the sides", 0.9),
+        ):
+            film = 1e9 * data.values(tree, entry)[row].ravel()
+            drawn.append(
+                chart.Line(places[order], film[order], f"{ring} ring, {place}", colour, dashes, width)
+            )
+        if rms[row]:
+            ends = np.array([AROUND.low, AROUND.high])
+            flat = np.full(2, FULL_FILM * rms[row])
+            drawn.append(chart.Line(ends, flat, f"{ring} ring, Λ = 3", colour, (1.0, 2.5), 1.2))
+            told.append(f"{rounded(rms[row])} nm on the {ring} ring")
+    yield chart.Panel(AROUND, chart.Axis("film / nm", low=0.0), tuple(drawn), height=4.0)
+    yield (
+        "Thickness of the film in the middle and at the sides of each contact under its load at rest; a "
+        "contact that carries nothing has none."
+    )
+    if told:
+        yield (
+            f"Dotted: where the film at the sides is three times the rms of both surfaces, "
+            f"{' and '.join(told)}: below, asperities touch."
+        )
+
+
+def films_table(tree: DataTree) -> ReportTable | None:
+    """Films under the heaviest loads: how thick, how stiff, how damped."""
+    if not data.present(tree, bearing.HEAVIEST_FILM):
+        return None
+    shown = (
+        (bearing.HEAVIEST_FILM, "film, nm", 1e-9, in_digits(3)),
+        (bearing.FILM_RMS, "rms of both surfaces, nm", 1e-9, in_digits(3)),
+        (bearing.HEAVIEST_PARAMETER, "Λ", 1.0, in_digits(3)),
+        (bearing.FILM_HEATING, "left by the heat of the inlet", 1.0, data.in_percent),
+        (bearing.FILM_STIFFNESS, "stiffness, MN/m", 1e6, in_digits(3)),
+        (bearing.FILM_DAMPING, "damping, N s/m", 1.0, in_digits(3)),
+        (bearing.ASPERITY_SHARE, "carried by asperities", 1.0, data.in_percent),
+    )
+    columns = {"contact with": text_cells(f"{ring} ring" for ring in data.words(tree, bearing.RING))}
+    for entry, head, unit, form in shown:
+        if data.present(tree, entry):
+            columns[head] = number_cells(data.values(tree, entry) / unit, form)
+    viscosity = 1e3 * (data.number(tree, bearing.OIL_VISCOSITY) or 0.0)
+    pressure = 1e9 * (data.number(tree, bearing.OIL_PRESSURE) or 0.0)
+    note = (
+        f"Under the heaviest static load. Its oil has {rounded(viscosity)} mPa s and {rounded(pressure)} "
+        "1/GPa at its temperature; contacts are full of it. Film by Hamrock and Dowson, less what the heat "
+        "of the inlet takes (Wilson and Sheu); Λ is the least film over the rms of both surfaces within the "
+        "contact: 3 or more a full film, less than 1 boundary lubrication."
+    )
+    return table("films", "Films of oil", columns, note)
 
 
 def _some_turns(tree: DataTree) -> slice:

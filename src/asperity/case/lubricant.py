@@ -1,0 +1,168 @@
+"""The oil of a bearing: by its grade, or by two viscosities; without it contacts are dry."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from asperity.case.form import Section
+from asperity.contact.film import Film, inlet_heating
+from asperity.contact.hertz import Hertz
+from asperity.contact.oil import DENSITY, GRADES, INDEX, Oil
+from asperity.errors import InputError
+from asperity.laws import Need, spec_of
+from asperity.parameters import Choice, Number, Quantity, key, optional
+
+if TYPE_CHECKING:
+    from asperity.structures.ball_bearing import Kinematics
+
+GRADE = "ISO VG "
+_VISCOSITY = Quantity("m^2/s", above=0)
+_VISCOUS = "0.1 mm^2/s to 100000 mm^2/s: oils lie between"
+_WITH_OIL = "oil or viscosity_40"
+
+
+class LubricantKeys(Section):
+    """The oil between balls and raceways, of which contacts are full."""
+
+    ALTERNATIVES = (("oil", "viscosity_40"),)
+
+    oil: str | None = optional(
+        Choice(tuple(f"{GRADE}{grade}" for grade in GRADES)), f"{GRADE}68", "grade of the oil", "dry contacts"
+    )
+    viscosity_index: float = key(
+        Number(at_least=0, at_most=300), INDEX, "its viscosity index (ASTM D2270)", goes_with="oil"
+    )
+    viscosity_40: float | None = optional(
+        _VISCOSITY, "68 mm^2/s", "kinematic viscosity at 40 degC instead", "that of the grade", _VISCOUS
+    )
+    viscosity_100: float | None = optional(
+        _VISCOSITY, "8.6 mm^2/s", "the same at 100 degC", "by the index", _VISCOUS, goes_with="viscosity_40"
+    )
+    temperature: float = key(
+        Quantity("degC"),
+        "70 degC",
+        "temperature of oil and contacts",
+        "-60 degC to 250 degC: oils are used between",
+        goes_with=_WITH_OIL,
+    )
+    density: float = key(
+        Quantity("kg/m^3", above=0),
+        f"{DENSITY:g} kg/m^3",
+        "density of the oil",
+        "500 kg/m^3 to 2500 kg/m^3: oils lie between",
+        goes_with=_WITH_OIL,
+    )
+    pressure_viscosity: float | None = optional(
+        Quantity("Pa^-1", above=0),
+        "20 GPa^-1",
+        "pressure-viscosity coefficient at this temperature",
+        "that of a mineral oil of these viscosities",
+        "1 GPa^-1 to 100 GPa^-1: oils lie between",
+        goes_with=_WITH_OIL,
+    )
+    damping_time: float | None = optional(
+        Quantity("s", above=0),
+        "12.5 us",
+        "damping of each contact over its stiffness; bearings are said to have 2.5 to 25 us (Krämer 1993)",
+        "that of its film",
+        "1 ns to 10 ms: contacts lie between",
+        goes_with=_WITH_OIL,
+    )
+
+    @property
+    def found(self) -> Oil | None:
+        """The oil, if there is one."""
+        cool = self.viscosity_40
+        hot = self.viscosity_100
+        if self.oil is not None:
+            graded = Oil.of_grade(int(self.oil.removeprefix(GRADE)), self.viscosity_index)
+            cool = graded.viscosity_40
+            hot = graded.viscosity_100
+        if cool is None or hot is None:
+            return None
+        return Oil(cool, hot, self.density, self.pressure_viscosity)
+
+    def film(self, contact: Hertz, speed: float) -> Film | None:
+        """The film in a contact whose surfaces roll with a speed, m/s, if there is oil."""
+        if (oil := self.found) is None:
+            return None
+        at = self.temperature
+        viscosity = oil.viscosity(at)
+        left = inlet_heating(viscosity, oil.thinning(at), speed, oil.conductivity)
+        return Film(contact, speed, viscosity, oil.pressure_viscosity_at(at), left)
+
+    def damping(self, film: Film, force: float) -> float:
+        """Damping of a contact under a force, N, with its film, N s/m."""
+        if self.damping_time is None:
+            return film.damping(force)
+        return self.damping_time * film.stiffness(force)
+
+    def problems(self) -> Iterator[InputError]:
+        """Both viscosities, of an oil that can be."""
+        if self.viscosity_40 is not None and self.viscosity_100 is None:
+            yield InputError("viscosity_100", "nothing", "the viscosity at 100 degC, beside viscosity_40")
+            return
+        try:
+            self.film(Hertz(1e11, 1e-3, 1e-3), 1.0)
+        except InputError as error:
+            yield error.about("viscosity_index" if self.oil else "viscosity_100")
+
+
+class Oiled:
+    """A bearing that runs, by its oil: films of the contacts under their largest static loads."""
+
+    if TYPE_CHECKING:
+        bearing: Any
+        lubricant: LubricantKeys
+        laws: tuple[str, ...]
+        contact_damping: float
+
+        @property
+        def kinematics(self) -> Kinematics:
+            """What turns how fast."""
+
+        @property
+        def contacts(self) -> tuple[tuple[Hertz, float], tuple[Hertz, float]]:
+            """Smooth contacts with the inner and the outer ring, and their largest static loads, N."""
+
+    @property
+    def passing_speeds(self) -> tuple[float, float]:
+        """Speeds with which contacts move along the inner and the outer raceway, m/s."""
+        turning = self.kinematics
+        inner, outer = (
+            2.0 * math.pi * radius * abs(turning.cage - ring)
+            for radius, ring in zip(
+                self.bearing.bearing.raceway_radii, (turning.inner, turning.outer), strict=True
+            )
+        )
+        return inner, outer
+
+    @cached_property
+    def films(self) -> tuple[Film, Film] | None:
+        """Films of oil in the contacts with the inner and the outer ring, if there is oil."""
+        inner, outer = (
+            self.lubricant.film(contact, speed)
+            for (contact, _), speed in zip(self.contacts, self.passing_speeds, strict=True)
+        )
+        return None if inner is None or outer is None else (inner, outer)
+
+    @property
+    def dampings(self) -> tuple[float, float]:
+        """Damping of a contact with the inner and with the outer ring, N s/m."""
+        if self.films is None:
+            return self.contact_damping, self.contact_damping
+        inner, outer = (
+            self.lubricant.damping(film, load)
+            for film, (_, load) in zip(self.films, self.contacts, strict=True)
+        )
+        return inner, outer
+
+    def problems_of_films(self) -> Iterator[InputError]:
+        """Laws with which a film may be in series."""
+        for number, law in enumerate(self.laws if self.films else (), 1):
+            if spec_of(law).solved_every_step or Need.DATUM in spec_of(law).needs:
+                allowed = "laws that follow a force curve or a table, where a film of oil is in series"
+                yield InputError(f"laws[{number}]", f'"{law}"', allowed, "Take it out, or leave out the oil.")

@@ -1,0 +1,133 @@
+"""A law with a film of oil between its bodies, in series with them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from asperity.arguments import Array, require
+from asperity.contact.film import CENTRAL, Film
+from asperity.kernels.curves import monotone_slopes
+from asperity.kernels.pointforce import SHIFTED, TABLE, Prepared, evaluate_all
+from asperity.laws import spec
+from asperity.reduction.stiffness import ForceCurve
+
+LIGHTEST, HEAVIEST = 1e-5, 1e2
+"""Forces of the curve, over the load: below the first one nothing is pushed, beyond the last it goes on."""
+LIGHT = np.geomspace(5e-4, 0.6, 10)
+"""Approaches of further states of a table, over that under the load."""
+ROUNDS = 6
+"""Of Newton's method in a table."""
+KNOTS = 160
+"""Of the curve: its force is that of film and bodies in series within 1e-4."""
+
+
+@dataclass(frozen=True, eq=False)
+class WithFilm:
+    """A law whose bodies are as far apart as the film of oil between them is thick under the force.
+
+    Under a force F the approach is that of the dry law less h(F), in the middle of the contact. Where a law
+    has states, each counts as much less as the film of a smooth contact there is thick.
+
+    Parameters
+    ----------
+    law : Law
+        That follows a force curve, or a table.
+    film : Film
+        Between smooth bodies.
+    load : float
+        Of the contact, N, about which it is exact.
+    """
+
+    law: spec.Law
+    film: Film
+    load: float
+
+    @property
+    def name(self) -> str:
+        """Name of the law."""
+        return self.law.name
+
+    @property
+    def damping(self) -> float:
+        """Contact damping, N s/m."""
+        return self.law.damping
+
+    def prepare(self, positions: spec.ArrayLike) -> spec.Prepared:
+        """Lay the law out on positions (n,) of the contact, m."""
+        dry = self.law.prepare(positions)
+        allowed = "one that follows a force curve, or looks forces up in a table"
+        fits = isinstance(dry, Prepared) and dry.form in (SHIFTED, TABLE)
+        require(fits, "law of a contact with a film", self.name, allowed)
+        assert isinstance(dry, Prepared)
+        if dry.form == TABLE:
+            return self._looked_up(dry)
+        states = self.nearer(dry.states)
+        curve = self.curve(ForceCurve(dry.knots, dry.coefficients, dry.exponent, dry.upper, dry.bilateral))
+        return dry._replace(
+            states=states, knots=curve.knots, coefficients=curve.coefficients, exponent=float(curve.exponent),
+            upper=float(curve.upper),
+        )  # fmt: skip
+
+    def _looked_up(self, dry: Prepared) -> Prepared:
+        """A table of forces with the film, in its states and in further ones of light contacts."""
+        lighter = self.film.contact.approach(self.load) * LIGHT
+        states = self.nearer(np.unique(np.append(dry.states, lighter)))
+        touches = dry.touches - self.thickness(np.array(0.0))
+        root = np.asfortranarray(np.column_stack([self._root_at(dry, touches, each) for each in states]))
+        slopes = np.asfortranarray(monotone_slopes(states, root))
+        return dry._replace(
+            states=states, values=root, slopes=slopes, touches=touches, upper=float(states[-1])
+        )
+
+    def _root_at(self, dry: Prepared, touches: Array, approach: float) -> Array:
+        """F^(2/3) of a table at an approach from its planes with the film, m; below touch less than 0.
+
+        Dry bodies would have come nearer by h(F): Newton's method in the logarithm of how far they overlap,
+        from the overlap of smooth bodies on.
+        """
+        contact = self.film.contact
+        closed = approach - touches
+        least = contact.approach(LIGHTEST * self.load)
+        overlap = np.maximum(approach - dry.touches, least)
+        for _ in range(ROUNDS):
+            force, stiffness, _ = evaluate_all(dry, dry.planes + dry.touches + overlap, 0)
+            film = self.thickness(force)
+            missed = overlap - film - (approach - dry.touches)
+            rising = overlap * (
+                1.0 - CENTRAL.load * film * stiffness / np.maximum(force, LIGHTEST * self.load)
+            )
+            overlap = np.maximum(overlap * np.exp(np.clip(-missed / rising, -2.0, 2.0)), least)
+        force, _, _ = evaluate_all(dry, dry.planes + dry.touches + overlap, 0)
+        steep = contact.stiffness_constant ** (2.0 / 3.0)
+        return np.where(closed > 0.0, np.cbrt(force) ** 2, steep * closed)
+
+    def nearer(self, approaches: Array) -> Array:
+        """Approaches (k,), m, less the film of a smooth contact at each."""
+        contact = self.film.contact
+        dry = contact.stiffness_constant * np.maximum(approaches, 0.0) ** 1.5
+        return np.asarray(approaches - self.thickness(dry))
+
+    def thickness(self, force: Array) -> Array:
+        """Film thickness (k,), m, under forces (k,), N; under hardly any force that of the lightest one."""
+        share = np.maximum(force / self.load, LIGHTEST)
+        return np.asarray(self.film.central(self.load) * share**CENTRAL.load)
+
+    def curve(self, dry: ForceCurve) -> ForceCurve:
+        """Force over approach with the film, of that of the dry bodies."""
+        if dry.bilateral:
+            force = float(dry.force(dry.knots[0]))
+            softer = 1.0 / float(dry.stiffness(dry.knots[0])) + float(self._yielding(force))
+            apart = float(self.thickness(np.array(force)))
+            return ForceCurve.linear(force, 1.0 / softer, float(dry.knots[0]) - apart)
+        forces = self.load * np.geomspace(LIGHTEST, HEAVIEST, KNOTS)
+        bodies = dry.inverse(forces)
+        stiffness = 1.0 / (1.0 / dry.stiffness(bodies) + self._yielding(forces))
+        found = ForceCurve.from_samples(bodies - self.thickness(forces), forces, stiffness=stiffness)
+        beyond = dry.upper - self.film.central(self.load)
+        return ForceCurve(found.knots, found.coefficients, found.exponent, beyond)
+
+    def _yielding(self, force: Array | float) -> Array:
+        """−dh/dF of the film under forces (k,), N; m/N."""
+        return np.asarray(-CENTRAL.load * self.thickness(np.asarray(force)) / force)

@@ -1,0 +1,83 @@
+"""Laws with a film of oil: bodies and film in series, closed forms; tables and curves alike."""
+
+import numpy as np
+import pytest
+
+from asperity.contact.film import Film
+from asperity.contact.hertz import in_groove
+from asperity.errors import InputError
+from asperity.laws.film import LIGHTEST, WithFilm
+from asperity.laws.hertz import HertzLaw
+from asperity.laws.layout import force
+from asperity.laws.linear import Linear
+from asperity.laws.printed import Printed
+from asperity.laws.shifted import Shifted
+from asperity.laws.table import Table
+from asperity.reduction.stiffness import ForceCurve, ForceTable
+from asperity.reduction.texture import StateTexture
+
+CONTACT = in_groove(115e9, 3.97e-3, 4.13e-3, 15.55e-3)
+FILM = Film(CONTACT, 1.77, 17.3e-3, 18.5e-9)
+LOAD = 60.0
+K = CONTACT.stiffness_constant
+FORCES = LOAD * np.geomspace(1e-3, 8.0, 30)
+NEARER = CONTACT.approach(1.0) * FORCES ** (2 / 3) - [FILM.central(each) for each in FORCES]
+"""Approach of bodies and film in series, by its definition, m."""
+SHORT = np.arange(64) * 1e-5
+
+
+def looked_up(approaches, heights=0.0):
+    """A table of smooth contacts on a path of some height, m."""
+    forces = K * np.maximum(np.subtract.outer(approaches, -heights * np.ones(64)), 0.0) ** 1.5
+    return Table(ForceTable(forces, approaches, 0.0, 1e-5, np.full(64, -heights)))
+
+
+def test_bodies_and_film_are_in_series():
+    """δ(F) = δ_H(F) − h(F), of a curve to rounding; there is a force before smooth bodies would touch."""
+    found = force(WithFilm(HertzLaw(K), FILM, LOAD), np.zeros(30), NEARER)
+    np.testing.assert_allclose(found, FORCES, rtol=1e-6)
+    assert NEARER[0] < 0.0
+    thickest = FILM.central(LIGHTEST * LOAD)
+    assert force(WithFilm(HertzLaw(K), FILM, LOAD), [0.0], [-1.2 * thickest]) == 0.0
+
+
+def test_a_table_has_the_film_of_a_curve():
+    """Of the same smooth contact, by a few states as scans have them."""
+    states = CONTACT.approach(LOAD) * np.array([0.2, 0.5, 1.0, 1.7, 2.6, 4.2])
+    found = force(WithFilm(looked_up(states), FILM, LOAD), np.full(30, 3e-4), NEARER)
+    np.testing.assert_allclose(found, FORCES, rtol=0.03)
+    raised = force(WithFilm(looked_up(states, 1e-7), FILM, LOAD), np.full(30, 3e-4), NEARER - 1e-7)
+    np.testing.assert_allclose(raised[8:], FORCES[8:], rtol=0.03)
+
+
+def test_a_texture_is_followed_as_by_the_dry_law_and_its_states_move_with_the_film():
+    """h of two states, straight between them: at the film's approach of a state its own."""
+    states = CONTACT.approach(LOAD) * np.array([0.5, 1.5])
+    texture = StateTexture(np.array([[0.0] * 64, [2e-8] * 64]), states, 0.0, 1e-5)
+    dry = Shifted(ForceCurve.hertz(K), texture)
+    law = WithFilm(dry, FILM, LOAD)
+    for state, height in zip(states, (0.0, 2e-8), strict=True):
+        at = law.nearer(np.array([state]))
+        assert float(at[0]) == pytest.approx(state - FILM.central(CONTACT.force(state)))
+        found = force(law, [1e-4], at)
+        alone = force(WithFilm(HertzLaw(K), FILM, LOAD), [0.0], at - height)
+        assert found == pytest.approx(alone, rel=1e-9)
+
+
+def test_a_linear_law_is_softer_and_nearer_by_the_film():
+    """Through (s0 − h, P) with the stiffness of bodies and film in series."""
+    approach = CONTACT.approach(LOAD)
+    stiffness = CONTACT.tangent_stiffness(approach)
+    law = WithFilm(Linear(LOAD, stiffness, approach, None), FILM, LOAD)
+    at = approach - FILM.central(LOAD) + np.array([0.0, 1e-8])
+    working, further = force(law, np.zeros(2), at)
+    assert working == pytest.approx(LOAD)
+    assert (further - working) / 1e-8 == pytest.approx(FILM.stiffness(LOAD), rel=1e-6)
+    assert FILM.stiffness(LOAD) < stiffness
+
+
+def test_a_law_of_secants_has_no_film():
+    """What it is told by is where its states begin, which a film moves."""
+    law = WithFilm(Printed(ForceCurve.hertz(K), None, datum=1e-6), FILM, LOAD)
+    with pytest.raises(InputError, match="law of a contact with a film: received printed; allowed: one that"):
+        law.prepare(SHORT)
