@@ -43,6 +43,10 @@ SAME_SPEED = 0.01
 """Share by which speeds by the lines of files may differ that are told to be of one speed."""
 
 
+OF_LINE = ("expected", "deviation", "found", "frequency", "amplitude", "background", "side_bands")
+"""What is told of each line."""
+
+
 def heard(
     keys: BearingKeys,
     files: Sequence[Path],
@@ -101,13 +105,12 @@ def heard(
     if picture is not None:
         _draw(keys, title, struck, found, tones, diagnosis, verdict, picture)
     say(verdict)
-    names = ("expected", "deviation", "found", "frequency", "amplitude", "background", "side_bands")
     return {
         **_told(diagnosis),
         "tacho": turned,
         "band": diagnosis.record.limits,
         "lines": {
-            part: each and {name: getattr(each, name) for name in names} for part, each in found.items()
+            part: each and {name: getattr(each, name) for name in OF_LINE} for part, each in found.items()
         },
         "signals": [
             {"signal": name, **_told(each), "verdict": diagnostics.diagnosis_sentence(each)}
