@@ -449,8 +449,8 @@ def ball_sliding_table(tree: DataTree) -> ReportTable:
     columns = {"ball at": number_cells(np.round(degrees) + 0.0, "{:.0f}°")}
     shown = (
         (bearing.SPIN_CREEPAGE, "spin, rad/m", 1.0),
-        (bearing.RIM_CREEPAGE, "at the rim, %", 0.01),
-        (bearing.SLIDING_HEAT, "heat, W", 1.0),
+        (bearing.RIM_CREEPAGE, "sliding at the rim, %", 0.01),
+        (bearing.SLIDING_HEAT, "heat/μ, W", 1.0),
     )
     for row, ring in enumerate(data.words(tree, bearing.RING)):
         for entry, words, size in shown:
