@@ -147,8 +147,14 @@ def on(*sides):
 
 test_what_is_no_mechanism_is_refused = refusals(
     (lambda: Mechanism([], [BALL], []), "contacts.*0 for 1 contact .*one for each contact of a body"),
+    (lambda: Mechanism([], [BALL], [on(Side(0, ALONG))]), "structure of a contact"),
+    (lambda: Mechanism([RAIL, RAIL], [BALL], [on(Side(0, ALONG))]), "structures.*2 rails.*one at most"),
     (
-        lambda: Mechanism([], [BALL], [RollingContact(BELOW, along, (Side(0, ALONG),))]),
-        "structure of a contact",
+        lambda: Mechanism([RAIL, plate(1.0)], [BALL], [on(Side(0, ALONG), Side(1, ALONG, -1.0))]),
+        r"sides of a contact on a rail: received 2 of signs \[1.0, -1.0\].*alone, with a sign of 1",
+    ),
+    (
+        lambda: Mechanism([RAIL], [BALL], [on(Side(0, ALONG, -1.0))]),
+        r"sides of a contact on a rail: received 1 of signs \[-1.0\]",
     ),
 )

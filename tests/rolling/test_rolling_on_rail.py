@@ -9,8 +9,14 @@ from numpy.testing import assert_allclose, assert_array_equal
 from asperity.errors import ComputationError, LargeDeflectionWarning
 from asperity.laws import HertzLaw, Linear
 from asperity.reduction.texture import StateTexture
+from asperity.rolling.course import Course
+from asperity.rolling.driver import RolledMechanism, carried, recorded
+from asperity.rolling.mechanism import Mechanism, RollingContact, Side
+from asperity.rolling.rest import start_still
 from asperity.rolling.roll import roll_bodies
-from asperity.structures.body import Body, Wheel, carriage
+from asperity.rolling.trajectory import Path
+from asperity.structures.body import GRAVITY, Body, Wheel, carriage, chain
+from asperity.structures.modal import ModalStructure
 from asperity.structures.moving_kernel import moving_kernel
 from asperity.structures.rail_poles import rail_between, rail_poles
 from asperity.structures.track import Track
@@ -133,6 +139,39 @@ def test_the_energy_of_sprung_wheels_on_a_rail_closes(between):
     assert energy.residual < 1e-5
     assert energy.shares["damping of the bodies"] > 1e-3 * energy.throughput
     assert energy.contact_damping > 1e-3 * energy.throughput
+
+
+def test_what_a_spring_carries_above_two_wheels_may_be_a_structure(between):
+    """A free mass that a spring presses on each wheel, against masses that are coordinates of the bodies."""
+    above, spring, damper, load = 1200.0, 2e7, 3e4, 40e3
+    law = HertzLaw(9.4e10, texture(3e-5), damping=2e3)
+    path = Path.laid(PATH["start"], SPEED, STEP, PATH["duration"], PATH["settling"]).ahead([0.0, 2.5])
+    on_rail = [RollingContact(law, along.places, (Side(0, along),)) for along in path.trajectories]
+
+    def rolled(mechanism):
+        course = Course(mechanism, STEP, path.total)
+        loads = np.full(course.contacts, LOAD)
+        none = np.zeros((0, mechanism.first_modes[-1]))
+        run = carried(course, loads, start_still, sensors=none)
+        return RolledMechanism(**recorded(run, 0))
+
+    sprung = chain([MASS, above], [spring], [damper], load=load)
+    expected = rolled(Mechanism([between], [sprung] * 2, on_rail)).contact_force
+    none, both = np.zeros((1, 1)), np.array([[1.0], [-1.0]])
+    wheel = Body(np.array([[MASS]]), none, none, both, np.array([MASS * GRAVITY]), np.zeros(2))
+    mass = ModalStructure([-10.0, 1e3], [0.0], 0.0, np.full((2, 1), above**-0.5))
+    link = Linear(load + above * GRAVITY, spring, damping=damper)
+    contacts = []
+    for place, (below, along) in enumerate(zip(on_rail, path.trajectories, strict=True), 1):
+        contacts += [below, RollingContact(link, along.places, (Side(place, along),))]
+    pressed = np.array([-(load + above * GRAVITY) * above**-0.5])
+    made = Mechanism([between, mass, mass], [wheel] * 2, contacts, [np.zeros(0), pressed, pressed])
+    run = rolled(made)
+    assert expected.std() > 0.1 * LOAD
+    same(run.contact_force[::2], expected, 1e-3)  # of the damper, in steps
+    assert np.ptp(run.contact_force[1::2]) > 0.05 * LOAD
+    assert run.energy.residual < 1e-9
+    assert run.energy.shares["structure"] > 1e-4 * run.energy.throughput
 
 
 def test_wheels_go_on_where_they_were_on_poles_as_good_as_the_kernels_themselves(kernel, between):

@@ -53,7 +53,6 @@ class System(NamedTuple):
     constant: NDArray  # (m,), constant generalised forces of the oscillators; empty without any
     softening: NDArray  # (n,), compliance in series with each contact that keeps a step stable, m/N
     time_step: float  # s
-    speed: float  # m/s
     coupled: bool  # whether one contact can feel another
     channels: Channels  # of a rail, none without one
 
@@ -285,10 +284,10 @@ def solve_contacts(solve, system, motion, laws, row, shapes):  # type: ignore[no
 
 
 @compiled(**INNER, **REASSOCIATE)
-def end_step(system, motion, record, step, shapes, slopes):  # type: ignore[no-untyped-def]
+def end_step(system, motion, record, step, shapes, rates):  # type: ignore[no-untyped-def]
     """Take the forces at the end of a step as they are, and write records and ledger; those of the start.
 
-    Mode shapes and slopes (n, s) under the contacts.
+    Mode shapes under the contacts and their rates there (n, s), per second.
     """
     a = system.coefficients
     if step > 0:
@@ -313,7 +312,7 @@ def end_step(system, motion, record, step, shapes, slopes):  # type: ignore[no-u
     for i in range(POWERS):
         motion.power[i] = 0.0
     for k in range(motion.trial.shape[0]):
-        observe_contact(system, motion, record, step, shapes, slopes, k)
+        observe_contact(system, motion, record, step, shapes, rates, k)
     motion.power[OVER_DAMPING], motion.power[BODY_DAMPING] = dissipated(system, motion, shapes.shape[1])
     if step > 0:
         book(system, motion)
@@ -331,7 +330,7 @@ def end_step(system, motion, record, step, shapes, slopes):  # type: ignore[no-u
 
 
 @compiled(**ONCE)
-def contact_rates(system, motion, shapes, slopes, k):  # type: ignore[no-untyped-def]
+def contact_rates(system, motion, shapes, rates, k):  # type: ignore[no-untyped-def]
     """Now at a contact: displacement of structure and of body, their rates, and the climb on the slope, m/s.
 
     The displacement of the structure is positive downwards, that of the body upwards; a rail, of which
@@ -345,14 +344,14 @@ def contact_rates(system, motion, shapes, slopes, k):  # type: ignore[no-untyped
     coordinates = system.core_shapes.shape[1]
     over = motion.rail_ahead[k] + product(shapes[k], q, 0)
     over_rate = product(shapes[k], v, 0)
-    slope = product(slopes[k], q, 0)
+    climb = product(rates[k], q, 0)
     body = product(system.core_shapes[k], core, 0) + product(own, q, first)
     body_rate = product(system.core_shapes[k], core, coordinates) + product(own, v, first)
-    return over, over_rate, system.speed * slope, body, body_rate
+    return over, over_rate, climb, body, body_rate
 
 
 @compiled(**ONCE)
-def observe_contact(system, motion, record, step, shapes, slopes, k):  # type: ignore[no-untyped-def]
+def observe_contact(system, motion, record, step, shapes, rates, k):  # type: ignore[no-untyped-def]
     """Write the records of a contact, and what its force did over the step: to it, and on the slope.
 
     The force is linear over the step, whatever it does from step to step: by parts its work on the contact
@@ -360,12 +359,12 @@ def observe_contact(system, motion, record, step, shapes, slopes, k):  # type: i
     an impact does. On a rail the work is that on contact and rail: approach and rate are those of the body.
     The approach that the law sees moves on, too.
     """
-    over, over_rate, climb, body, body_rate = contact_rates(system, motion, shapes, slopes, k)
+    over, over_rate, climb, body, body_rate = contact_rates(system, motion, shapes, rates, k)
     h = system.time_step
     force = motion.force[0, k]
     rise = 0.0
     rate = -(body_rate + over_rate + climb)
-    on_rail = system.channels.source.shape[0] > 0
+    on_rail = system.channels.first[k + 1] > system.channels.first[k]
     approach, rolling = record.relative_displacement[k], record.rolling_displacement[k]
     record.contact_force[k, step], record.over_displacement[k, step] = force, over
     approach[step] = -(over + body)
@@ -416,10 +415,10 @@ def book(system, motion):  # type: ignore[no-untyped-def]
 
 
 @compiled(**ONCE)
-def roll(sweep, solve, system, motion, record, laws, shapes, slopes, offset, stop, largest):  # type: ignore[no-untyped-def]
+def roll(sweep, solve, system, motion, record, laws, shapes, rates, offset, stop, largest):  # type: ignore[no-untyped-def]
     """Roll from the state's step to `stop`; False from a force larger than `largest`, or NaN.
 
-    Then the state stands at that step. Row 0 of mode shapes and slopes (k, n, s), and of laws that are laid
+    Then the state stands at that step. Row 0 of mode shapes, their rates (k, n, s), and of laws that are laid
     out, belongs to the step `offset`. Step zero is the start, which is only recorded. `sweep` is
     `solve_contacts` and `solve` what it calls.
     """
@@ -429,7 +428,7 @@ def roll(sweep, solve, system, motion, record, laws, shapes, slopes, offset, sto
         if step > 0:
             begin_step(system, motion, shapes[row])
             converged = sweep(solve, system, motion, laws, row, shapes[row])
-        end_step(system, motion, record, step, shapes[row], slopes[row])
+        end_step(system, motion, record, step, shapes[row], rates[row])
         motion.counts[0] = step
         motion.counts[1] += 0 if converged else 1
         for k in range(motion.trial.shape[0]):
@@ -439,8 +438,8 @@ def roll(sweep, solve, system, motion, record, laws, shapes, slopes, offset, sto
 
 
 @compiled(**LOOP)
-def roll_prepared(system, motion, record, laws, shapes, slopes, offset, stop, largest):  # type: ignore[no-untyped-def]
+def roll_prepared(system, motion, record, laws, shapes, rates, offset, stop, largest):  # type: ignore[no-untyped-def]
     """Roll compiled laws, as `roll`."""
     return roll(
-        solve_contacts, solve_prepared, system, motion, record, laws, shapes, slopes, offset, stop, largest
+        solve_contacts, solve_prepared, system, motion, record, laws, shapes, rates, offset, stop, largest
     )

@@ -29,19 +29,17 @@ def softened(
     stiffness, motion = start(ground, bodies, system, course.at_start)
     own = alternating(system)
     least, thrown = ground.alternating + own, ground.thrown + own
-    if ground.bay:
-        on_bay = np.sqrt(float(stiffness.max()) / ground.bay) / (2.0 * np.pi)
-        resonance = "the contact resonance on a bay of rail", on_bay, resolution.PER_RESONANCE_ON_RAIL
-    else:
-        direct = system.own + ground.shapes**2 @ system.coefficients[3, : len(ground.natural)]
-        resonances = steps.contact_resonance(stiffness, direct, least, system.time_step)
-        resonance = "the contact resonance", float(resonances.max()), resolution.PER_RESONANCE
+    direct = system.own + ground.shapes**2 @ system.coefficients[3, : len(ground.natural)]
+    resonances = steps.contact_resonance(stiffness, direct, least, system.time_step)[~ground.on_rail]
+    resonance = "the contact resonance", float(resonances.max(initial=0.0)), resolution.PER_RESONANCE
+    on_bay = np.sqrt(float(stiffness[ground.on_rail].max(initial=0.0)) / ground.bay) / (2.0 * np.pi)
+    on_rail = "the contact resonance on a bay of rail", on_bay, resolution.PER_RESONANCE_ON_RAIL
     natural = np.concatenate([body.natural_frequencies for body in bodies])
     asked = natural[natural <= (highest_frequency or np.inf)]  # of others nobody asked
     own_mode = "the highest mode of a body", float(asked.max(initial=0.0)), resolution.PER_MODE
-    per_highest = resolution.PER_HIGHEST_ON_RAIL if ground.bay else resolution.PER_HIGHEST
+    per_highest = resolution.PER_HIGHEST_ON_RAIL if ground.on_rail.any() else resolution.PER_HIGHEST
     highest = "the highest frequency asked for", highest_frequency or 0.0, per_highest
-    steps.warn_if_coarse(system.time_step, (resonance, ground.limit, own_mode, highest))
+    steps.warn_if_coarse(system.time_step, (resonance, on_rail, *ground.limits, own_mode, highest))
     laws = zip(course.at_start, stiffness.tolist(), strict=True)
     values = [steps.largest_values(*each) for each in laws]
     damping = np.array([law.damping for law in course.laws])
@@ -117,7 +115,6 @@ def system_of(
         constant=np.pad(constant, (0, len(natural) - len(constant))) if len(constant) else constant,
         softening=np.zeros(n),
         time_step=float(h),
-        speed=1.0,  # slopes of mode shapes are rates already
         coupled=bool(len(channels.source) > n or (n > 1 and ground.natural.size > 0) or n > b),
         channels=channels,
     )

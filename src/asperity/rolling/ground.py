@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from asperity.arguments import Array
+from asperity.arguments import Array, NDArray
 from asperity.errors import InputError, LargeDeflectionWarning, percent
 from asperity.kernels.rail import Channels
 from asperity.rolling.course import Course
@@ -36,11 +36,12 @@ class Ground:
     sensors: Array  # (sensors, s)
     channels: Channels  # of a rail, else none
     softest: float  # largest static compliance under a contact on its path, m/N; infinite if nothing holds it
-    alternating: float  # least alternating compliance of all contacts at once, m/N
-    thrown: float  # that of what throws bodies apart: an endless rail carries impacts away
-    limit: Limit  # what a time step must resolve
+    alternating: Array  # (n,), least alternating compliance of all contacts at once, m/N
+    thrown: Array  # (n,), that of what throws bodies apart: an endless rail carries impacts away
+    limits: tuple[Limit, ...]  # what a time step must resolve
+    on_rail: NDArray[np.bool_]  # (n,), which contacts are on a rail
     yields: Array  # (n, n), mean static compliance of a rail, m/N; zero of modes
-    bay: float = 0.0  # mass of a bay of rail, kg
+    bay: float = np.inf  # mass of a bay of rail, kg
     memory: int = 0  # time steps that a rail remembers
 
 
@@ -49,13 +50,8 @@ def ground_of(course: Course, sensors: Array, steps: range | None = None) -> Gro
 
     Sensors are rows (k, s) over all modes; a contact is refused where it leaves what it rolls over.
     """
-    looked_at = range(0, course.total + 1, max(1, (course.total + 1) // PLACES)) if steps is None else steps
-    rail = course.mechanism.rail
-    return _modes(course, sensors, looked_at) if rail is None else _rail(rail, course, sensors)
-
-
-def _modes(course: Course, sensors: Array, steps: range) -> Ground:
-    """Structures by their modes, or a plane that does not move, without any."""
+    if steps is None:
+        steps = range(0, course.total + 1, max(1, (course.total + 1) // PLACES))
     _refuse_to_leave(course)
     mechanism = course.mechanism
     n = course.contacts
@@ -68,7 +64,7 @@ def _modes(course: Course, sensors: Array, steps: range) -> Ground:
     softest = float(((shapes / natural) ** 2).sum(axis=2).max()) if natural.all() else np.inf
     frequencies = natural / (2.0 * np.pi)
     followed = frequencies[frequencies <= HIGHEST]  # others are meant to be static
-    return Ground(
+    ground = Ground(
         natural=natural,
         ratios=ratios,
         shapes=under[0],
@@ -76,11 +72,13 @@ def _modes(course: Course, sensors: Array, steps: range) -> Ground:
         sensors=sensors,
         channels=no_channels(n),
         softest=softest,
-        alternating=least,
-        thrown=least,
-        limit=("the highest mode of the structure", float(followed.max(initial=0.0)), PER_MODE),
+        alternating=np.full(n, least),
+        thrown=np.full(n, least),
+        limits=(("the highest mode of the structure", float(followed.max(initial=0.0)), PER_MODE),),
+        on_rail=np.zeros(n, dtype=bool),
         yields=np.zeros((n, n)),
     )
+    return ground if mechanism.rail is None else _on_rail(ground, mechanism.rail, course)
 
 
 def no_channels(n: int) -> Channels:
@@ -96,7 +94,8 @@ def _refuse_to_leave(course: Course) -> None:
     for k, contact in enumerate(course.mechanism.contacts):
         for side in contact.sides:
             structure = course.mechanism.structures[side.structure]
-            assert not isinstance(structure, RailBetween)
+            if isinstance(structure, RailBetween):
+                continue
             low, high = structure.extent
             margin = 1e-9 * (high - low)
             first, last = (
@@ -111,11 +110,12 @@ def _refuse_to_leave(course: Course) -> None:
                 )
 
 
-def _rail(rail: RailBetween, course: Course, sensors: Array) -> Ground:
-    """A rail, by poles or scattered, between contacts at fixed distances."""
+def _on_rail(ground: Ground, rail: RailBetween, course: Course) -> Ground:
+    """The same with a rail, by poles or scattered, between those contacts on it, at fixed distances."""
     kernel = rail.kernel
     n = course.contacts
-    ways = [contact.sides[0].trajectory for contact in course.mechanism.contacts]
+    on_rail = course.mechanism.on_rail
+    ways = [course.mechanism.contacts[k].sides[0].trajectory for k in np.flatnonzero(on_rail).tolist()]
     given = np.array([way.rates(range(course.total + 1)) for way in ways])
     same = np.allclose(given, kernel.speed, rtol=1e-9, atol=0.0)
     if not (same and np.isclose(course.time_step, kernel.time_step, rtol=1e-9, atol=0.0)):
@@ -125,38 +125,36 @@ def _rail(rail: RailBetween, course: Course, sensors: Array) -> Ground:
         allowed = f"{made}, for which the rail's kernel was computed"
         raise InputError("path", received, allowed, "Compute the moving kernel of this path.")
     starts = np.concatenate([way.places(range(1)) for way in ways])
-    channels, weights = _channels(rail, starts)
+    channels, weights = _channels(rail, starts, on_rail)
     found = np.zeros((n, n))
     static = np.array([each.sum(axis=1).mean() for each in weights])
     found[channels.receiver, channels.source] = static[channels.table]
     squares, vectors = np.linalg.eigh(0.5 * (found + found.T))
-    none = np.zeros(0)
-    modes = np.zeros((n, 0))
     taps = kernel.weights.shape[1]
     softest = float(kernel.weights.sum(axis=1).max())
     least = float((kernel.weights @ (-1.0) ** np.arange(taps)).min())  # of all places in a bay
     limit = "the passing of sleepers v/L", kernel.speed / kernel.track.sleeper_spacing, PER_SLEEPER
     yields = np.asarray((vectors * squares.clip(0.0)) @ vectors.T)
     bay = kernel.track.mass_per_length * kernel.track.sleeper_spacing
-    return Ground(
-        natural=none,
-        ratios=none,
-        shapes=modes,
-        rates=modes,
-        sensors=sensors,
+    return replace(
+        ground,
         channels=channels,
-        softest=softest,
-        alternating=least,
-        thrown=0.0,
-        limit=limit,
+        softest=max(softest, ground.softest),
+        alternating=np.where(on_rail, least, ground.alternating),
+        thrown=np.where(on_rail, 0.0, ground.thrown),
+        limits=(*ground.limits, limit),
+        on_rail=on_rail,
         yields=yields,
         bay=bay,
         memory=taps,
     )
 
 
-def _channels(rail: RailBetween, starts: Array) -> tuple[Channels, list[Array]]:
-    """Channels between all contacts within reach, and the weights of the kernels that they carry."""
+def _channels(rail: RailBetween, starts: Array, on_rail: NDArray[np.bool_]) -> tuple[Channels, list[Array]]:
+    """Channels between all contacts within reach, and the weights of the kernels that they carry.
+
+    Places of the contacts on the rail at the start, m, and which of all contacts (n,) these are.
+    """
     tables: list[RailPoles | MovingKernel] = [rail.direct]
     pairs = []
     for source, here in enumerate(starts):
@@ -167,9 +165,12 @@ def _channels(rail: RailBetween, starts: Array) -> tuple[Channels, list[Array]]:
                 tables += [] if known else [found]
                 pairs.append((source, receiver, known[0] if known else len(tables) - 1))
     source, receiver, table = np.array(pairs, dtype=np.int64).T.copy()
+    contacts = np.flatnonzero(on_rail)
     none = np.zeros(0)
     weights = [each.kernel.weights for each in tables]
     bays, period = rail.kernel.track.cell_bays, rail.kernel.track.period
+    place = np.zeros(on_rail.size)
+    place[contacts] = starts / period
     laid = [
         (each.poles, over_the_period(each.residues, bays), np.zeros((1, 1)))
         if isinstance(each, RailPoles)
@@ -179,11 +180,11 @@ def _channels(rail: RailBetween, starts: Array) -> tuple[Channels, list[Array]]:
     decay = padded([np.stack([poles.real, poles.imag]) for poles, _, _ in laid])
     residue = padded([np.stack([residues.real, residues.imag], axis=1) for _, residues, _ in laid])
     channels = Channels(
-        source=source,
-        receiver=receiver,
+        source=contacts[source],
+        receiver=contacts[receiver],
         table=table,
-        first=np.searchsorted(source, np.arange(len(starts) + 1)),
-        place=starts / period,
+        first=np.searchsorted(contacts[source], np.arange(on_rail.size + 1)),
+        place=place,
         stride=rail.kernel.speed * rail.kernel.time_step / period,
         decay=decay.reshape(len(tables), -1),
         residue=residue.reshape(len(tables), CELLS * bays + 1, -1),

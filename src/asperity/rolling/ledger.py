@@ -17,9 +17,9 @@ class Ledger:
     elastic energy gained by bodies and structure, of what their damping dissipated, of the work on the
     contacts (stored, damped, less what textures feed in), and of that against the slope of the bent
     structure, given up to the drive that keeps the speed; up to what the time step leaves open: the integrals
-    are taken by the trapezoidal rule from the motion, the energies from the states at start and end. On a
-    rail, of which displacements alone are known, the contacts hold what goes into contacts and rail together,
-    and the terms of the structure are zero.
+    are taken by the trapezoidal rule from the motion, the energies from the states at start and end. Of a
+    rail displacements alone are known: its contacts hold what goes into contacts and rail together, and the
+    terms of the structure are those of other structures.
     """
 
     shares: dict[str, float]  # by their names in results; the first equals the sum of the others

@@ -46,8 +46,9 @@ class Mechanism:
     Parameters
     ----------
     structures : sequence of Modal or RailBetween
-        By their modes, as `asperity.structures.modal` or `asperity.structures.ring`; rotating frames too. Or
-        one rail alone (`asperity.structures.rail_poles`), on which contacts keep their distances.
+        By their modes, as `asperity.structures.modal` or `asperity.structures.ring`; rotating frames too. One
+        may be a rail (`asperity.structures.rail_poles`), on which contacts keep their distances, each with
+        the rail as its only side.
     bodies : sequence of Body
         Their `places` along the path are not looked at.
     contacts : sequence of RollingContact
@@ -70,14 +71,24 @@ class Mechanism:
         for contact in self.contacts:
             known = all(0 <= side.structure <= last for side in contact.sides)
             require(known, "structure of a contact", "one that is not there", f"0 to {last}")
-        if self.rail is not None:
-            alone = last == 0 and all(len(contact.sides) == 1 for contact in self.contacts)
-            require(alone, "structures", "a rail beside others", "a rail alone, under all contacts")
+        rails = [isinstance(each, RailBetween) for each in self.structures]
+        require(sum(rails) <= 1, "structures", count_of(sum(rails), "rail"), "one at most")
+        for contact in self.contacts:
+            signs = [side.sign for side in contact.sides]
+            alone = signs == [1.0] or not any(rails[side.structure] for side in contact.sides)
+            allowed = "the rail alone, with a sign of 1"
+            require(alone, "sides of a contact on a rail", f"{len(signs)} of signs {signs}", allowed)
 
     @property
     def rail(self) -> RailBetween | None:
         """The rail, if it is one that is rolled over."""
         return next((each for each in self.structures if isinstance(each, RailBetween)), None)
+
+    @property
+    def on_rail(self) -> NDArray[np.bool_]:
+        """Which contacts are on the rail (n,)."""
+        sides = ([self.structures[side.structure] for side in each.sides] for each in self.contacts)
+        return np.array([any(isinstance(each, RailBetween) for each in every) for every in sides])
 
     @property
     def first_modes(self) -> NDArray[np.int64]:
