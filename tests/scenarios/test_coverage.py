@@ -1,6 +1,8 @@
 """Which bands roughness covers at the speed of a case: told by check and report, doubted, refused."""
 
+import csv
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,7 +10,8 @@ import pytest
 from asperity import WheelOnRail
 from asperity.case.tables import read_levels
 from asperity.errors import InputError, OutOfRangeWarning, PhysicsWarning
-from asperity.scenarios.coverage import coverages
+from asperity.reference.cnossos import rail_roughness
+from asperity.scenarios.coverage import coverages, doubt_levels
 from asperity.scenarios.preparing import prepare
 
 LAWS = ["linear-filtered"]
@@ -96,3 +99,56 @@ def test_columns_of_a_table_that_count_are_told(tmp_path):
     prepared = prepare(case(levels), "case")
     (found,) = coverages(prepared.case, prepared.textures)
     assert "a.csv ('level (dB)', without 'limit (dB)'), waves of" in found.at(30.0)
+
+
+LIMIT = np.column_stack(rail_roughness("iso3095"))[7:29]
+"""Of 400 mm to 3.15 mm."""
+DATA = Path(__file__).parents[3] / "shared" / "data" / "niederwangen" / "rail_roughness.csv"
+
+
+def doubts_of(path, wavelength, level):
+    """Whether the levels of a file are doubted, and how."""
+    text = "".join(f"{a:.6g}, {b:.2f}\n" for a, b in zip(wavelength, level, strict=True) if np.isfinite(b))
+    path.write_text(f"wavelength (m), level (dB re 1 um)\n{text}")
+    with PhysicsWarning.caught() as caught:
+        doubt_levels(case(path))
+    return [str(each.message) for each in caught]
+
+
+@pytest.mark.parametrize(("times", "added", "told"), [
+    (1.0, 0.0, ""),
+    (1.0, -14.9, ""),
+    (1.0, -15.1, "surface.spectrum: the levels of a.csv are, in the mean from 400 mm to 3.15 mm, 15 dB be"),
+    (1.0, 29.9, ""),
+    (1.0, 35.0, "35 dB above the limit of EN ISO 3095 for rails; those of rails and wheels are up to 15 dB"),
+    (10.0, -8.0, "22 dB below the limit of EN ISO 3095"),
+    (0.1, 0.0, ""),
+])  # fmt: skip
+def test_levels_far_beside_those_of_all_that_rolls_are_doubted(tmp_path, times, added, told):
+    """Re 1 nm they are 60 dB higher; of a smooth rail wavelengths in cm that are read as mm or the other way
+    round show, of a rough one they are those of another rough one."""
+    found = doubts_of(tmp_path / "a.csv", times * LIMIT[:, 0], LIMIT[:, 1] + added)
+    assert len(found) == bool(told)
+    assert told in "".join(found)
+
+
+def test_levels_of_a_file_are_doubted_as_a_case_is_prepared(tmp_path):
+    """Of a wheel, too; named spectra and numbers from Python, which are lower on purpose, are not."""
+    np.savetxt(
+        tmp_path / "a.csv", LIMIT - [0.0, 20.0], header="wavelength (m) level (dB re 1 um)", comments=""
+    )
+    smooth = case(LIMIT - [0.0, 20.0], roughness=tmp_path / "a.csv")
+    told = [str(each.message) for each in prepare(smooth, "case").caught]
+    (doubt,) = [each for each in told if "the limit of EN ISO 3095" in each]
+    assert doubt.startswith("wheel.roughness: the levels of a.csv are, in the mean")
+
+
+@pytest.mark.skipif(not DATA.exists(), reason="needs the measured data that are kept beside the project")
+def test_no_measured_rail_is_doubted_and_most_with_wavelengths_ten_times_as_long(tmp_path):
+    with DATA.open(newline="") as file:
+        head, *rows = csv.reader(file)
+    wavelength = np.array([float(each.split()[0]) for each in head[5:]]) / 100.0
+    some = [np.array([float(each or "nan") for each in row[5:]]) for row in rows[::12]]
+    assert not any(doubts_of(tmp_path / "a.csv", wavelength, level) for level in some)
+    longer = [bool(doubts_of(tmp_path / "a.csv", 10.0 * wavelength, level)) for level in some]
+    assert np.mean(longer) > 0.5

@@ -1,17 +1,23 @@
-"""Which one-third octaves of frequency the roughness of a case covers at its speed."""
+"""Which one-third octaves of frequency the roughness of a case covers at its speed, and whether levels of a
+file are those of anything that rolls."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
 
 from asperity.arguments import Array
 from asperity.case.form import name_of
 from asperity.case.scene import Case
 from asperity.case.tables import MEASURED_WAVE, columns_of_levels
 from asperity.errors import InputError, OutOfRangeWarning
+from asperity.reference import cnossos
 from asperity.scenarios.records import spectrum_levels
 from asperity.scenarios.textures import Textures
 from asperity.spectra import HALF_BAND, nominal_frequency, nominal_length, third_octave_bands
 from asperity.speeds import slowest
+from asperity.surfaces.bands import likely_band
 from asperity.written_numbers import rounded
 
 HEARD = (100.0, 5000.0)
@@ -19,6 +25,14 @@ HEARD = (100.0, 5000.0)
 FEWEST = 0.5
 """Share of the bands below which levels in the others are doubted: waves of 400 mm to 3.15 mm, as measured on
 rails, cover two thirds of them from 4 m/s to 150 m/s."""
+
+FEWEST_LEVELS = 6
+"""Bands of 400 mm to 3.15 mm from which on levels are held against the limit for rails."""
+SMOOTHER, ROUGHER = 15.0, 30.0
+"""Below and above that limit, in the mean, dB, from where on levels of a file are doubted. Sixty lines that
+were measured on rails and the classes of CNOSSOS lie between 9 below and 4 above, wheels with flats 10 above.
+Wavelengths ten times too long lower rails to some 20 below; ten times too short, they raise them by 13 at
+most, and rails with corrugation are as rough, so that nothing is said."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,6 +84,33 @@ def _covered(case: Case, key: str, name: str, longest: float, shortest: float) -
     lowest = case.speed / longest / HALF_BAND
     top = slowest(case.speed) / shortest * HALF_BAND
     return Coverage(key, name, (longest, shortest), bands, bands[(bands >= lowest) & (bands <= top)])
+
+
+def doubt_levels(case: Case) -> None:
+    """Warn of a file of levels far beside the limit for rails: of wavelengths or a reference that are
+    wrong."""
+    at, limit = cnossos.rail_roughness("iso3095")
+    for key, spectrum in (
+        ("surface.spectrum", case.surface.spectrum),
+        (f"{case.ROLLING}.roughness", getattr(case.rolling, "roughness", None)),
+    ):
+        if not isinstance(spectrum, Path):
+            continue
+        wavelength, level, name = spectrum_levels(spectrum)
+        held = likely_band(wavelength)
+        if held.sum() < FEWEST_LEVELS:
+            continue
+        allowed = np.interp(np.log(wavelength[held]), np.log(at[::-1]), limit[::-1])
+        beside = float(np.mean(level[held] - allowed))
+        if -SMOOTHER <= beside <= ROUGHER:
+            continue
+        where = f"{rounded(abs(beside), 2)} dB {'above' if beside > 0.0 else 'below'}"
+        usual = f"up to {SMOOTHER:g} dB below and {ROUGHER:g} dB above"
+        OutOfRangeWarning.warn(
+            f"{key}: the levels of {name} are, in the mean from 400 mm to 3.15 mm, {where} the limit of EN "
+            f"ISO 3095 for rails; those of rails and wheels are {usual}. "
+            "Are the wavelengths in their unit, and the levels re 1 µm?"
+        )
 
 
 def problems_of_coverage(case: Case, textures: Textures) -> Iterator[InputError]:

@@ -29,7 +29,7 @@ from asperity.rolling.resolution import (
 )
 from asperity.rolling.steps import warn_if_coarse
 from asperity.scenarios import compiling, reducing, run_time, running_in
-from asperity.scenarios.coverage import problems_of_coverage
+from asperity.scenarios.coverage import doubt_levels, problems_of_coverage
 from asperity.scenarios.doubts import doubt_sizes
 from asperity.scenarios.geometry import geometry_of, window_cells
 from asperity.scenarios.problems import by_key, problems, refuse
@@ -69,6 +69,7 @@ def prepare(case: Case, source: str = "case") -> PreparedCase:
         prepared = with_rims(prepared)
         warn_of_textures(case, prepared.shape, prepared.textures)
         doubt_sizes(case, prepared.scene.over)
+        doubt_levels(case)
         refuse(list(problems_of_coverage(case, prepared.textures)), source)
     seconds = {"textures": time.perf_counter() - begin}
     processor = time.process_time() - spent
