@@ -11,6 +11,7 @@ import pytest
 from report_reading import Reader, computers_exponents, own_scripts, without
 from report_tree import PARTS
 
+from asperity import BallBearing
 from asperity.reporting import data
 from asperity.reporting.figure import columns_text
 from asperity.reporting.page import answers_of
@@ -223,3 +224,52 @@ def test_nothing_bars_anybody(browser, members_in_this_process, own_cache, page)
         shown = opened(390, "dark")
         assert shown.evaluate("document.documentElement.scrollWidth") <= 390
         assert_accessible(shown)
+
+
+# --- data sheets of bearings
+
+
+def cells_of(path):
+    """Words of all cells of a page, and its text."""
+    text = path.read_text(encoding="utf-8").replace("\u00a0", " ")
+    return re.findall(r"<td[^>]*>(.*?)</td>", text), text
+
+
+def test_the_sheet_of_a_bearing_has_its_geometry_stiffness_and_tones(tmp_path):
+    sheet = tmp_path / "7205C.html"
+    words = ("bearing", "7205C", "--radial", "60 N", "--axial", "200 N", "--speed", "6000 1/min")
+    document = json.loads(call(*words, "--sheet", str(sheet), "--json").stdout)
+    assert document["files"] == {"sheet": str(sheet.resolve())}
+    cells, text = cells_of(sheet)
+    bearing = BallBearing.named("7205C")
+    found = bearing.loaded(60.0, 200.0, speed=100.0)
+    assert {"12 of 7.94 mm, steel", "25 × 52 × 15 mm", "15°"} <= set(cells)
+    turning = bearing.kinematics(100.0, contact_angle=found.contact_angle)
+    assert f"{turning.ball_pass_outer:.2f}" in cells
+    assert f"{turning.ball_pass_inner / 100.0:.4f}" in cells
+    assert "60 N radially, 200 N axially at 6000 1/min" in text
+    stiffness = found.stiffness[:, 2, 2].mean()
+    half = bearing.loaded(30.0, 100.0, speed=100.0).stiffness[:, 2, 2].mean()
+    table = text[text.index("Stiffness over load</h3>") : text.index("Tones</h3>")]
+    plain = str.maketrans("⁶⁷⁸⁹", "6789")
+    rows = [cell.translate(plain).replace("·10", "e") for cell in re.findall(r"<td[^>]*>(.*?)</td>", table)]
+    loads, _, _, axially = np.array(rows, dtype=float).reshape(-1, 4).T
+    at = [np.interp(np.log(load), np.log(loads), axially) for load in np.hypot([60, 30], [200, 100])]
+    assert at == pytest.approx([stiffness, half], rel=5e-3)
+    assert "SNFA E 225" in text
+    assert own_scripts(text)
+
+
+def test_the_sheet_of_a_run_has_its_bands_by_part(runs, tmp_path):
+    result = runs(BEARING)
+    save(result, tmp_path / "run.nc")
+    call("bearing", str(tmp_path), "--sheet", str(tmp_path / "run.html"))
+    cells, text = cells_of(tmp_path / "run.html")
+    assert "Velocities in the bands of ISO 15242-2" in text
+    assert any("alone" in cell for cell in cells)
+    said = call("bearing", "6205", "--radial", "9 N", "--sheet", "a.pdf", code=2).stderr
+    assert "--sheet: received 'a.pdf'; allowed: a name that ends in .html" in said
+    assert (
+        "--sheet: received a signal"
+        in call("bearing", "6205", "--sheet", "a.html", "-o", "b.png", code=2).stderr
+    )

@@ -159,8 +159,15 @@ def _of_case(keys: dict[str, Any], source: str) -> dict[str, Any]:
     if "kind" not in keys:
         return keys
     case = BearingUnderLoad.read(keys, Origin.file(source))
-    carried = {name: f"{getattr(case, name)!r} {unit}" for name, unit in CARRIED.items()}
+    carried = {name: f"{float(getattr(case, name))!r} {unit}" for name, unit in CARRIED.items()}
     return dict(keys.get("bearing", {})) | carried
+
+
+def bearing_of_run(text: str, source: str) -> BearingKeys:
+    """Bearing, load and speed of a run by the text of its case, whose files need no longer be there."""
+    keys = toml.read_toml(text, "case", source)
+    own = {name: keys[name] for name in ("kind", "bearing", *CARRIED) if name in keys}
+    return BearingKeys.read(_of_case(own, source), Origin.file(source))
 
 
 def read_bearing(source: str, options: Mapping[str, Any]) -> BearingKeys:

@@ -192,8 +192,9 @@ def bearing(
     asperity bearing --list
     # loads, contact ellipses, pressures, stiffness, tones
     asperity bearing 6205 --radial '100 N' --speed '1797 1/min'
-    # loads of the balls as a picture
+    # loads of the balls as a picture; a data sheet
     asperity bearing own.toml --axial '50 N' -o load.png
+    asperity bearing own.toml --axial '50 N' --sheet own.html
     # is there a fault? lines of the envelope beside those expected
     asperity bearing 6205 --speed '1797 1/min' --signal run.npz --rate '12 kHz' -o envelope.png
     # stiffness over load and speed, for a program of rotors

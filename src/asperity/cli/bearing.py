@@ -6,15 +6,18 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from asperity.case.ball_bearing import BearingKeys, read_bearing
+from asperity.case.ball_bearing import BearingKeys, bearing_of_run, read_bearing
 from asperity.cli.bearing_table import write_table
 from asperity.cli.bearing_tolerances import say_tolerances
 from asperity.cli.heard import heard
 from asperity.diagnostics.decision import NAMES
 from asperity.errors import InputError
+from asperity.files import write_bytes
 from asperity.reference.bearings import COLUMNS, LISTED, PITCH, TONES, by_citation, named_bearings
 from asperity.reporting.figure import write_chart
+from asperity.running import open_result
 from asperity.scenes.bearing import static_group
+from asperity.scenes.bearing_sheet import bearing_sheet
 from asperity.scenes.figures.bearing import ball_contacts_table, load_zone
 from asperity.schema import tree
 from asperity.structures.ball_bearing import PARTS, Kinematics
@@ -44,6 +47,7 @@ def show_bearing(
     *,
     listed: bool = False,
     table: Path | None = None,
+    sheet: Path | None = None,
     limits: str | None = None,
     cage_angle: str | None = None,
     load_direction: str | None = None,
@@ -71,6 +75,9 @@ def show_bearing(
     if table is not None:
         told = write_table(source, options, table, cage_angle, load_direction)
         return {"bearing": source, **dict.fromkeys(TOLD), **told}
+    _refuse_mixed("--sheet", sheet, {}, looks_elsewhere or limits is not None or table is not None)
+    if sheet is not None:
+        return {"bearing": source, **dict.fromkeys(TOLD), **_write_sheet(source, options, sheet)}
     if limits is not None:
         waves = say_tolerances(source, options, limits, outer_mass)
         return {"bearing": source, **dict.fromkeys(TOLD), "tolerances": waves}
@@ -89,6 +96,19 @@ def show_bearing(
     if picture is not None:
         told["files"] = {"picture": picture}
     return {"bearing": name, **dict.fromkeys(TOLD), **told}
+
+
+def _write_sheet(source: str, options: Mapping[str, Any], sheet: Path) -> dict[str, Any]:
+    """Write the data sheet of a bearing, or of a run with what its parts make in the bands."""
+    if sheet.suffix.lower() != ".html":
+        raise InputError("--sheet", f"'{sheet}'", "a name that ends in .html")
+    run = open_result(source) if Path(source).is_dir() or source.endswith(".nc") else None
+    keys = read_bearing(source, options) if run is None else bearing_of_run(run.attrs["case"], source)
+    doubt_speed(keys.bearing, float(keys.speed or 0.0))
+    text = bearing_sheet(keys.name or Path(source).stem, keys, run)
+    written = write_bytes(sheet, text.encode()).resolve()
+    say(f"Data sheet: {written}")
+    return {"files": {"sheet": written}}
 
 
 def _refuse_mixed(name: str, given: object, belonging: Mapping[str, object], looks_elsewhere: bool) -> None:

@@ -412,6 +412,13 @@ BEARING = [
         ["--load-direction"], help="Of the radial load from x towards y, for --table, as '-90 deg'."
     ),
     click.Option(
+        ["--sheet"],
+        type=PATH,
+        metavar="FILE",
+        help="Write its data sheet, .html: geometry, stiffness over load, tones; of the folder of a run in "
+        "place of NAME also its bands by part.",
+    ),
+    click.Option(
         ["--limits"],
         metavar="VELOCITIES",
         help="Largest rms radial velocities in the bands of ISO 15242, as '50 um/s, 30 um/s, none': list how "

@@ -1,0 +1,136 @@
+"""The data sheet of a ball bearing on one page: geometry, load, stiffness over load, tones, bands by part."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from asperity.errors import InputError, PhysicsWarning
+from asperity.reference.bearings import LISTED
+from asperity.reporting import chart, data
+from asperity.reporting.figure import PageFigure
+from asperity.reporting.page import Block, figures_page
+from asperity.reporting.panels import log_axis
+from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
+from asperity.scenes.bearing import static_group
+from asperity.scenes.figures.bearing import ball_contacts_table, bands_table
+from asperity.schema import tree
+from asperity.structures.ball_bearing import PARTS
+from asperity.written_numbers import rounded
+
+if TYPE_CHECKING:
+    from xarray import DataTree
+
+    from asperity.case.ball_bearing import BearingKeys
+    from asperity.structures.bearing_statics import LoadedBearing
+
+FACTORS = np.geomspace(0.1, 4.0, 15)
+"""Loads over that of the sheet at which stiffness is told."""
+DIRECTIONS = ("along the radial load", "across it", "axially")
+COLOURS = (chart.BLUE, chart.GREEN, chart.VERMILLION)
+PART_NAMES = {
+    "outer": "outer ring (BPFO)",
+    "inner": "inner ring (BPFI)",
+    "ball": "ball, on both rings (2 BSF)",
+}
+
+
+def bearing_sheet(name: str, keys: BearingKeys, run: DataTree | None = None) -> str:
+    """Lay out the data sheet of a bearing under its load.
+
+    Parameters
+    ----------
+    name : str
+        What it is called.
+    keys : BearingKeys
+        The bearing, its load and its speed.
+    run : DataTree, optional
+        A result of it, whose velocities in the bands of ISO 15242 are told, by part.
+
+    Returns
+    -------
+    str
+        A page of HTML that needs nothing else.
+
+    Raises
+    ------
+    InputError
+        If it does not carry its load.
+    """
+    speed = float(keys.speed or 0.0)
+    found = keys.bearing.loaded(keys.radial, keys.axial, speed=speed)
+    turning = keys.bearing.kinematics(speed or 1.0, contact_angle=found.contact_angle)
+    at_rest = tree(static_group(found, turning))
+    load = f"{rounded(found.radial, 4)} N radially, {rounded(found.axial, 4)} N axially"
+    at = f" at {rounded(60.0 * speed, 5)} 1/min" if speed else ""
+    blocks: list[Block] = [_geometry(keys), _stiffness(keys, speed), _tones(found, speed)]
+    if run is not None and (bands := data.unless_missing(bands_table, run)):
+        blocks.append(bands)
+    blocks.append(ball_contacts_table(at_rest))
+    summary = f"Under {load}{at}: heaviest ball {rounded(found.inner_load.max())} N, "
+    peak = max(found.inner_pressure.max(), found.outer_pressure.max())
+    summary += f"{rounded(peak / 1e9)} GPa, contact angle {rounded(math.degrees(found.contact_angle))}°."
+    return figures_page(f"Ball bearing {name}", summary, blocks, {})
+
+
+def _geometry(keys: BearingKeys) -> ReportTable:
+    of = keys.bearing
+    listed = LISTED.get(keys.name or "")
+    rows: list[tuple[str, str]] = []
+    if listed is not None and listed.bore is not None:
+        rows.append(("bore × outside diameter × width", f"{listed.cells[2]} mm"))
+    rows += [
+        ("balls", f"{of.balls} of {rounded(1e3 * of.ball_diameter, 5)} mm, {of.ball_material.name}"),
+        ("pitch diameter", f"{rounded(1e3 * of.pitch_diameter, 5)} mm"),
+        ("groove radii", f"{of.inner_conformity:g} D (inner), {of.outer_conformity:g} D (outer)"),
+        ("diametral clearance", f"{rounded(1e6 * of.radial_clearance)} µm"),
+        ("free contact angle", f"{rounded(math.degrees(of.free_angle))}°"),
+        ("preload", f"{rounded(of.preload)} N"),
+        ("rings", of.material.name),
+        ("mass of a ball", f"{rounded(1e3 * of.ball_mass)} g"),
+    ]
+    note = "Dimensions as given." if listed is None else listed.sentence
+    columns = {"of": text_cells(what for what, _ in rows), "value": text_cells(told for _, told in rows)}
+    return table("geometry", "Geometry", columns, note)
+
+
+def _carried(keys: BearingKeys, speed: float) -> Iterator[tuple[float, LoadedBearing]]:
+    """The bearing at shares of its load, as far as it carries them."""
+    preload = keys.bearing.preload
+    with PhysicsWarning.ignored():
+        for factor in FACTORS:
+            try:
+                axial = max(factor * (keys.axial + preload) - preload, 0.0)
+                yield factor, keys.bearing.loaded(factor * keys.radial, axial, speed=speed)
+            except InputError:
+                if factor > 1.0:
+                    return
+                continue
+
+
+def _stiffness(keys: BearingKeys, speed: float) -> PageFigure:
+    shares, found = zip(*_carried(keys, speed), strict=True)
+    loads = np.hypot(keys.radial, keys.axial + keys.bearing.preload) * np.array(shares)
+    means = np.array([np.diagonal(each.stiffness, axis1=1, axis2=2).mean(axis=0) for each in found])
+    ways = dict(enumerate(DIRECTIONS)) if keys.radial else {0: "radially", 2: DIRECTIONS[2]}
+    lines = [chart.Line(loads, 1e-6 * means[:, n], way, COLOURS[n], marker="o") for n, way in ways.items()]
+    across = log_axis("stiffness / (N/µm)", [each.y for each in lines])
+    along = chart.Axis("load / N", float(loads[0]), float(loads[-1]), log=True)
+    columns = {"load (N)": loads} | {f"stiffness {way} (N/m)": means[:, n] for n, way in ways.items()}
+    caption = "Of the inner ring, means while a ball passes, at this ratio of radial and axial load."
+    parts: list[chart.Panel | str] = [chart.Panel(along, across, tuple(lines)), caption]
+    return PageFigure.of("stiffness_over_load", "Stiffness over load", parts, "", columns)
+
+
+def _tones(found: LoadedBearing, speed: float) -> ReportTable:
+    turning = found.bearing.kinematics(1.0, contact_angle=found.contact_angle)
+    names = ["cage", *(PART_NAMES[part] for part in PARTS)]
+    orders = np.array([turning.cage, *(turning.tone(part) for part in PARTS)])
+    columns = {"of": text_cells(names), "turns of the shaft": number_cells(orders, "{:.4f}")}
+    if speed:
+        columns["Hz"] = number_cells(orders * speed, "{:.2f}")
+    note = "In pure rolling, at the contact angle of the load; a cage that slips is slower by up to 1 %."
+    return table("tones", "Tones", columns, note)
