@@ -116,7 +116,7 @@ class SpeedCourse(float):
         return hash((self.times.tobytes(), self.speeds.tobytes()))
 
     def __repr__(self) -> str:
-        return f"SpeedCourse({self.times.tolist()}, {self.speeds.tolist()})"
+        return f"{type(self).__name__}({self.times.tolist()}, {self.speeds.tolist()})"
 
     def __reduce__(self) -> tuple[Callable[..., Any], tuple[Any, ...]]:
         return SpeedCourse, (self.times, self.speeds)

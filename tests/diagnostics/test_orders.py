@@ -13,8 +13,8 @@ from asperity.diagnostics.orders import (
     envelope_order_spectrum,
     order_spectrum,
     over_angle,
+    resonances_apart,
     run_up,
-    told_apart,
     turns_of,
 )
 from refusals import refusals
@@ -79,7 +79,7 @@ def test_resonance_and_orders_are_told_apart():
     stays = 1.0 / np.abs(1.0 - (frequency / 300.0) ** 2 + 0.1j * frequency / 300.0)
     orders = frequency / speed[:, None]
     follows = np.where(abs(np.log2(orders / 8.2)) < 0.5 / 24.0, 10.0, 1.0) / orders
-    found = told_apart(RunUp(speed, frequency, stays * follows), lowest=40.0)
+    found = resonances_apart(RunUp(speed, frequency, stays * follows), lowest=40.0)
     assert found.frequency[found.stays.argmax()] == pytest.approx(300.0, rel=0.03)
     inside = (found.frequency > 60.0) & (found.frequency < 1000.0)
     expected = np.interp(found.frequency, frequency, stays)[inside]
@@ -100,7 +100,7 @@ test_what_has_no_angle_is_refused = refusals(
         lambda: over_angle(np.zeros(3), [0.0, 1.0, 2.0]),
         "turns: received 2 of the record; allowed: 4 at least",
     ),
-    (lambda: told_apart(STEADY, lowest=1.0), "speeds within a factor of 1.01"),
-    (lambda: told_apart(replace(STEADY, speed=SPEEDS[::9000]), lowest=80.0), "less than 49.5"),
+    (lambda: resonances_apart(STEADY, lowest=1.0), "speeds within a factor of 1.01"),
+    (lambda: resonances_apart(replace(STEADY, speed=SPEEDS[::9000]), lowest=80.0), "less than 49.5"),
     (lambda: run_up(TIME, RATE, SPEEDS, resolution=0.5), "two pieces"),
 )

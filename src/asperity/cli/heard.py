@@ -71,14 +71,11 @@ def heard(
         signals, sampled = _read(files, rate, progress, array=array, column=column)
         turned: dict[str, Any] | None = None
         if tacho is not None:
-            courses = {
-                name: read_turned(file, signal, tacho, tacho_reads, array)
-                for file, (name, signal) in zip(files, signals.items(), strict=True)
-            }
-            told = fitting_speed(list(courses.values()), told)
-            resampled = at_constant_speed(list(signals.values()), list(courses.values()), told)
-            signals = dict(zip(signals, resampled, strict=True))
-            sampled = resampled[0].rate
+            beside = zip(files, signals.values(), strict=True)
+            courses = [read_turned(*each, tacho, tacho_reads, array) for each in beside]
+            told = fitting_speed(courses, told)
+            signals = at_constant_speed(signals, courses, told)
+            sampled = next(iter(signals.values())).rate
             turned = _turned(courses, told)
         edges = _band(band, sampled)
         told_of = progress if sum(each.values.size for each in signals.values()) >= MANY else None
@@ -120,9 +117,9 @@ def heard(
     }
 
 
-def _turned(courses: Mapping[str, Turned], told: float) -> dict[str, Any]:
+def _turned(courses: Sequence[Turned], told: float) -> dict[str, Any]:
     """Say how fast all turned, and of which speed frequencies are; return that."""
-    slow, _, fast = np.transpose([each.speeds for each in courses.values()])
+    slow, _, fast = np.transpose([each.speeds for each in courses])
     slowest, fastest = float(slow.min()), float(fast.max())
     span = f"{rounded(60.0 * slowest, 5)} to {rounded(60.0 * fastest, 5)} 1/min"
     say(

@@ -224,7 +224,7 @@ class ToldApart:
     unexplained: float
 
 
-def told_apart(found: RunUp, *, lowest: float) -> ToldApart:
+def resonances_apart(found: RunUp, *, lowest: float) -> ToldApart:
     """Tell what follows the speed from what stays at its frequency, in bands of 1/24 octave.
 
     With logarithms of amplitude, frequency f and speed n, ``ln A = a(ln f) + b(ln f − ln n)``: a sum of two

@@ -3,7 +3,7 @@
 import numpy as np
 
 from asperity.arguments import Array
-from asperity.diagnostics.orders import RunUp, order_spectrum, run_up, told_apart
+from asperity.diagnostics.orders import RunUp, order_spectrum, resonances_apart, run_up
 from asperity.scenes.computed_bearing import ComputedBearing
 from asperity.scenes.observer import Observer
 from asperity.schema import Values, bearing
@@ -49,7 +49,7 @@ def run_up_group(computed: ComputedBearing) -> Values:
     found |= laid_on_speeds(pieces, case.highest_frequency)
     if pieces.speed.max() < FACTOR * pieces.speed.min() or 2.0 * lowest >= case.highest_frequency:
         return found
-    apart = told_apart(pieces, lowest=lowest)
+    apart = resonances_apart(pieces, lowest=lowest)
     heard = apart.frequency <= case.highest_frequency
     return found | {
         bearing.FOLLOWING_ORDER: apart.order,

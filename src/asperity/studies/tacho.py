@@ -1,7 +1,7 @@
 """Recorded signals with a tacho, or a speed beside them: resampled over angle before they are read."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -14,7 +14,7 @@ from asperity.errors import InputError
 from asperity.speeds import FEWEST_TURNS
 from asperity.studies.signals import Recorded, read_beside
 from asperity.units import factor
-from asperity.written_numbers import rounded
+from asperity.written_numbers import count_of, rounded
 
 READS = '"1/min", "Hz", or its pulses in a turn, as "1 pulse" or "60 pulses"'
 _PULSES = re.compile(r"\s*([0-9]{1,6})\s*pulses?\s*")
@@ -59,7 +59,7 @@ def read_turned(
     `reads` says what stands there; by default the unit in its heading.
     """
     values, title = read_beside(path, which, array)
-    received = f"{values.size} samples beside a signal of {signal.values.size}"
+    received = f"{count_of(values.size, 'sample')} beside a signal of {signal.values.size}"
     require(values.size == signal.values.size, f"tacho in {path.name}", received, "one for each sample")
     unit = unit_of(title, "Hz") if reads is None else reads
     require(unit, "--tacho-reads", "nothing, and no unit above the column", READS)
@@ -93,14 +93,16 @@ def fitting_speed(turned: Sequence[Turned], told: float | None) -> float:
     return mean
 
 
-def at_constant_speed(signals: Sequence[Recorded], turned: Sequence[Turned], speed: float) -> list[Recorded]:
+def at_constant_speed(
+    signals: Mapping[str, Recorded], turned: Sequence[Turned], speed: float
+) -> dict[str, Recorded]:
     """Signals at equal steps of angle, as if all had turned at one speed, 1/s, at one sampling rate.
 
     What is missing stays missing. Resonances are smeared by as much as the speed changes, lines no more.
     """
     per_turn = max(orders.finest(each.turns[np.isfinite(each.turns)]) for each in turned)
-    found = []
-    for signal, course in zip(signals, turned, strict=True):
+    found = {}
+    for (name, signal), course in zip(signals.items(), turned, strict=True):
         inside = np.isfinite(course.turns)
         turns, values = course.turns[inside], signal.values[inside]
         gone = ~np.isfinite(values)
@@ -110,5 +112,5 @@ def at_constant_speed(signals: Sequence[Recorded], turned: Sequence[Turned], spe
         if gone.any():
             at = turns[0] + np.arange(resampled.size) / per_turn
             resampled[np.interp(at, turns, gone.astype(float)) > 0.0] = np.nan
-        found.append(replace(signal, values=resampled, rate=per_turn * speed, rate_by=""))
+        found[name] = replace(signal, values=resampled, rate=per_turn * speed, rate_by="")
     return found
