@@ -68,7 +68,7 @@ def run(
     from asperity.case.any_case import ReadyCase, function_named
     from asperity.case.cases import as_case
     from asperity.errors import PhysicsWarning
-    from asperity.observables.beside_result import with_measured
+    from asperity.observables.beside_result import with_tables_beside
     from asperity.progress import shown_progress
     from asperity.scenes.report import Result
     from asperity.threads import one_thread_in_linear_algebra
@@ -90,7 +90,7 @@ def run(
 
                 result = with_convergence(prepared, result, told)
             if not brief:
-                result = with_measured(prepared.case, result)
+                result = with_tables_beside(prepared.case, result)
     except ComputationError:
         _warn_again(caught)  # they may say why
         raise

@@ -11,7 +11,7 @@ import asperity
 from asperity.case.cases import as_case, case_class
 from asperity.case.measured_tables import MeasuredBearingKeys, MeasuredKeys
 from asperity.observables import BUILT_IN, reading
-from asperity.observables.beside_result import with_measured
+from asperity.observables.beside_result import with_tables_beside
 from asperity.running import prepare_case
 from asperity.scenes import schema
 from asperity.scenes.figures.measured import beside_measured, beside_table
@@ -106,7 +106,7 @@ def test_what_fits_read_and_reports_compare_is_one_list():
 def test_levels_of_a_beam_are_off_by_their_difference(beside):
     """One dB of measuring and the chance of the record add as squares; what is not computed is left open."""
     case = beside(BALL, "force_level", "acceleration_level")
-    tree = with_measured(case, of_beam())
+    tree = with_tables_beside(case, of_beam())
     force, sure = deviations(tree, "contact force level")
     assert_allclose(force, [3.0, 0.0, np.nan])
     assert_allclose(sure, [np.sqrt(1.36), np.sqrt(1.36), np.nan])
@@ -120,7 +120,7 @@ def test_levels_of_a_beam_are_off_by_their_difference(beside):
 
 def test_stiffness_and_mobility_are_off_by_a_ratio(beside):
     case = beside(BALL, "contact_stiffness", "mobility")
-    tree = with_measured(case, of_beam())
+    tree = with_tables_beside(case, of_beam())
     stiffness, sure = deviations(tree, "contact stiffness")
     assert_allclose(stiffness, [20.0 * np.log10(2.0), 0.0], atol=1e-9)
     assert_allclose(sure, 0.5)
@@ -134,7 +134,7 @@ def test_stiffness_and_mobility_are_off_by_a_ratio(beside):
 def test_a_bearing_is_off_in_bands_lines_and_tones(beside):
     """A relative deviation of 0.1 is 0.87 dB, beside 1 dB of measuring."""
     case = beside(BEARING, "band_velocity", "envelope_line", "tone")
-    tree = with_measured(case, of_bearing())
+    tree = with_tables_beside(case, of_bearing())
     velocity, sure = deviations(tree, "bearing band velocity")
     assert_allclose(velocity, [6.0206, 0.0], atol=1e-3)
     assert_allclose(sure, np.hypot(1.0, 0.8686), rtol=1e-3)
@@ -161,13 +161,13 @@ def test_what_was_measured_at_another_speed_is_for_fits_alone(beside):
     head, slow, fast = "run, speed (m/s)", "a, 1", "b, 2"
     wide = f"{head}, 200 Hz, 250 Hz, 315 Hz, 400 Hz, 500 Hz\n{slow}, 1, 12, 3, 4, 5\n{fast}, 1, 22, 3, 4, 5\n"
     case.measured.force_level.write_text(wide)
-    found = with_measured(case, of_beam())["measured"]
+    found = with_tables_beside(case, of_beam())["measured"]
     assert_allclose(found["measured"], [1.0, 12.0, 3.0, 4.0, 5.0])
     assert len(reading.beside(case)) == 2
 
 
 def test_the_report_says_how_far_and_what_next(beside):
-    tree = with_measured(beside(BALL, "force_level", "acceleration_level"), of_beam())
+    tree = with_tables_beside(beside(BALL, "force_level", "acceleration_level"), of_beam())
     table = beside_table(tree)
     cells = [[cell.text for cell in row] for row in table.rows]
     assert cells[0] == ["contact force level", "250 Hz", "13.0 dB re 1 N", "10.0 dB re 1 N", "+3.0", "± 2.3"]
@@ -185,7 +185,7 @@ def test_the_report_says_how_far_and_what_next(beside):
 def test_nothing_is_next_where_chance_explains_all(beside):
     case = beside(BALL, "force_level")
     case.measured.force_level.write_text("frequency (Hz), level (dB re 1 N)\n250, 11\n315, 12\n400, 14\n")
-    assert "Next" not in beside_table(with_measured(case, of_beam())).note
+    assert "Next" not in beside_table(with_tables_beside(case, of_beam())).note
 
 
 def prepared(base, name, text, beside):

@@ -44,7 +44,7 @@ class RunCase:
         return collected_of(self.tree)
 
 
-def with_measured(case: AnyCase, tree: DataTree) -> DataTree:
+def with_tables_beside(case: AnyCase, tree: DataTree) -> DataTree:
     """The result of a case with a group that compares it with the tables that [measured] names, if it does.
 
     Measurements under other conditions than those of the case are left out: a fit takes them.
@@ -53,7 +53,7 @@ def with_measured(case: AnyCase, tree: DataTree) -> DataTree:
         each for each in reading.combined(reading.tables_beside(case)) if _as_in(case, each.conditions)
     ]
     if measured:
-        tree["measured"] = DataTree(dataset=group(compared(RunCase(case, tree), measured)))
+        tree["measured"] = DataTree(dataset=group(laid_beside(RunCase(case, tree), measured)))
     return tree
 
 
@@ -66,7 +66,7 @@ def _as_in(case: AnyCase, conditions: Mapping[str, Any]) -> bool:
     return True
 
 
-def compared(run: RunCase, measured: Sequence[Measured]) -> Values:
+def laid_beside(run: RunCase, measured: Sequence[Measured]) -> Values:
     """Lay out all measured values beside those of a run, one list over all quantities."""
     found: dict[Any, list[Any]] = {each: [] for each in _LISTED}
     for each in measured:
