@@ -84,6 +84,22 @@ def test_two_structures_swing_against_each_other_with_their_reduced_mass():
     assert_allclose(swing, k * 1e-6 * np.cos(omega * (time[10:] - 9.5 * STEP)), atol=0.02)
 
 
+def test_a_spring_between_two_places_of_one_structure_is_opened_by_their_difference():
+    """A free bar that turns, in a spring from one arm to the frame through the other: ω² = k (a + b)²/J."""
+    inertia, arms, k, press = 0.02, (0.3, -0.2), 1e6, 3.0
+    bar = np.linspace(-1.0, 1.0, 9)
+    turning = ModalStructure(bar, [0.0], 0.0, (bar * inertia**-0.5)[:, None])
+    sides = tuple(
+        Side(0, Trajectory(lambda s, at=at: np.full(len(s), at), lambda s: np.zeros(len(s))), np.sign(at))
+        for at in arms
+    )
+    contact = RollingContact(Linear(0.0, k), along, sides, lambda s: 1e-6 * (np.asarray(s) > 9))
+    made = Mechanism([turning], [], [contact], [np.array([-press * 0.5 * inertia**-0.5])])
+    force = roll_mechanism(made, press, time_step=STEP, duration=TIME).contact_force[0]
+    omega, time = np.sqrt(k * 0.5**2 / inertia), STEP * np.arange(len(force))
+    assert_allclose(force[10:] - press, k * 1e-6 * np.cos(omega * (time[10:] - 9.5 * STEP)), atol=0.02)
+
+
 def test_what_swings_along_a_slope_works_on_it_at_the_rate_that_is_given():
     """On a mode that tilts: its drive takes up what bodies and structure lose, and nothing else."""
     turning = 2 * np.pi * 200.0
