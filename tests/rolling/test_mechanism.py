@@ -7,7 +7,10 @@ import pytest
 from numpy.testing import assert_allclose
 
 from asperity.errors import ExtrapolationWarning, LargeDeflectionWarning
-from asperity.laws import HertzLaw, Linear
+from asperity.laws import HertzLaw, Linear, Printed
+from asperity.reduction.stiffness import ForceCurve
+from asperity.reduction.texture import StateTexture
+from asperity.rolling.course import Course
 from asperity.rolling.driver import roll_mechanism
 from asperity.rolling.mechanism import Mechanism, RollingContact, Side
 from asperity.rolling.roll import roll_bodies
@@ -100,6 +103,16 @@ def test_a_spring_between_two_places_of_one_structure_is_opened_by_their_differe
     assert_allclose(force[10:] - press, k * 1e-6 * np.cos(omega * (time[10:] - 9.5 * STEP)), atol=0.02)
 
 
+def test_a_structure_that_nothing_holds_or_presses_starts_where_it_is():
+    """It falls under the body from then on: F = P − (P/M)/(1/m + 1/M) (1 − cos ωt), ω² = k (1/m + 1/M)."""
+    light, heavy, k, press = 0.2, 0.8, 1e6, 3.0
+    path = {"speed": SPEED, "start": 0.0, "duration": TIME, "time_step": STEP, "positions": [0.0]}
+    run = roll_bodies(plate(heavy), [Body.rigid(light, press)], [Linear(press, k)], **path)
+    both = 1 / light + 1 / heavy
+    swing = 1.0 - np.cos(np.sqrt(k * both) * run.time)
+    assert_allclose(run.contact_force[0], press - press / heavy / both * swing, atol=2e-3)
+
+
 def test_what_swings_along_a_slope_works_on_it_at_the_rate_that_is_given():
     """On a mode that tilts: its drive takes up what bodies and structure lose, and nothing else."""
     turning = 2 * np.pi * 200.0
@@ -139,6 +152,22 @@ def test_a_law_beyond_its_data_is_warned_of():
         roll_mechanism(
             Mechanism([], [ball], [RollingContact(Short(), along)]), LOAD, time_step=STEP, duration=1e-3
         )
+
+
+def test_the_thesis_law_is_beyond_its_data_by_its_approach_whatever_the_texture():
+    """Its force curve is read at the approach, not at what is left above the texture."""
+    raised = Printed(ForceCurve.hertz(2e10), StateTexture.unfiltered(np.full(400, 1e-6), 1e-4, -0.01), 1e-6)
+
+    class Short:
+        name, damping = "short", 0.0
+
+        def prepare(self, positions):
+            return raised.prepare(positions)._replace(upper=4e-7)
+
+    course = Course(Mechanism([], [Body.rigid(MASS, LOAD)], [RollingContact(Short(), along)]), STEP, 3)
+    course.laid(range(4))
+    assert course.beyond(np.array([[3e-7, 5e-7, 5e-7, 9e-7]])) == [3]
+    assert course.beyond(np.full((1, 4), 3e-7)) == [0]
 
 
 def test_laws_that_are_solved_in_every_step_go_beside_others():
