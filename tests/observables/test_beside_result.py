@@ -149,10 +149,10 @@ def test_a_bearing_is_off_in_bands_lines_and_tones(beside):
 def test_a_run_lays_it_out_unless_it_is_brief(beside, monkeypatch):
     case = beside(BALL, "force_level")
     monkeypatch.setattr("asperity.scenes.result.computed_result", lambda *_, brief: of_beam())
-    ready = SimpleNamespace(case=case, caught=())
+    ready = SimpleNamespace(case=case, caught=(), chosen={})
     assert "measured" in asperity.run(ready).children
     assert "measured" not in asperity.run(ready, brief=True).children
-    plain = SimpleNamespace(case=as_case(BALL), caught=())
+    plain = SimpleNamespace(case=as_case(BALL), caught=(), chosen={})
     assert "measured" not in asperity.run(plain).children
 
 
