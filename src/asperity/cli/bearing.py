@@ -16,7 +16,7 @@ from asperity.files import write_bytes
 from asperity.reference.bearings import COLUMNS, LISTED, PITCH, TONES, by_citation, named_bearings
 from asperity.reporting.figure import write_chart
 from asperity.running import open_result
-from asperity.scenes.bearing import static_group
+from asperity.scenes.bearing_at_rest import static_group
 from asperity.scenes.bearing_sheet import bearing_sheet
 from asperity.scenes.figures.bearing import ball_contacts_table, load_zone
 from asperity.schema import tree

@@ -19,7 +19,6 @@ from asperity.errors import PhysicsWarning, percent, warn_of_findings
 from asperity.progress import Progress
 from asperity.rolling.bearing import RolledBearing, steady_where_still
 from asperity.scenarios.prepared_bearing import (
-    LEFT_OUT,
     NAMES,
     ON,
     RINGS,
@@ -28,6 +27,7 @@ from asperity.scenarios.prepared_bearing import (
     omitted_from,
     prepare_bearing,
 )
+from asperity.scenes.bearing_at_rest import DIRECTIONS
 from asperity.scenes.bearing_validity import bearing_findings
 from asperity.scenes.computed_bearing import ComputedBearing, compute_bearing
 from asperity.scenes.observer import observed
@@ -36,11 +36,9 @@ from asperity.scenes.records import recorded_group
 from asperity.scenes.result import root_attributes, scenario_group
 from asperity.schema import Values, bearing, contact, spectra, tree
 from asperity.speeds import SpeedCourse, speed_at
-from asperity.structures.ball_bearing import PARTS, Kinematics
-from asperity.structures.bearing_statics import LoadedBearing
+from asperity.structures.ball_bearing import PARTS
 from asperity.written_numbers import rounded
 
-DIRECTIONS = ("along", "across", "axial")
 HARMONICS = 5
 REACH = 1.2
 """How far the envelope spectrum is kept, beyond the highest harmonic of a tone."""
@@ -84,8 +82,7 @@ def bearing_result(
     numerics = (*_numerics(case, time.monotonic() - began), *seen.numerics)
     scenario = scenario_group(case, numerics)
     scenario[contact.VALIDITY] = [finding.row() for finding in found]
-    at_rest = static_group(case.static, case.kinematics, omitted_from(case))
-    laid_out = scenario | at_rest | motion_group(computed) | heard | seen.values | apart
+    laid_out = scenario | motion_group(computed) | heard | seen.values | apart
     result = bearing.with_ring_forces(tree(laid_out))
     result.attrs = root_attributes(
         case,
@@ -103,49 +100,6 @@ def _draws(case: BearingUnderLoad) -> Iterator[tuple[str, str, float]]:
     for name, keys, radius in bearing_parts(case):
         if draw := keys.texture().draw:
             yield name, draw, radius
-
-
-# --- at rest
-
-
-def static_group(found: LoadedBearing, turning: Kinematics, omitted: str = LEFT_OUT) -> Values:
-    """Lay out how a bearing carries its load, and what turns how fast."""
-    of = found.bearing
-    along, across = np.transpose([found.semi_axes(ring) for ring in RINGS], (1, 0, 2, 3))
-
-    def both(what: str) -> list[Array]:
-        return [getattr(found, f"{ring}_{what}") for ring in RINGS]
-
-    return {
-        bearing.BALL: 1 + np.arange(of.balls),
-        bearing.RING: list(RINGS),
-        bearing.DIRECTION: list(DIRECTIONS),
-        bearing.CAGE_ANGLE: found.azimuth[:, 0],
-        bearing.AZIMUTH: found.azimuth,
-        bearing.BALL_LOAD: both("load"),
-        bearing.BALL_ANGLE: both("angle"),
-        bearing.PEAK_PRESSURE: both("pressure"),
-        bearing.SEMI_AXIS_ALONG: along,
-        bearing.SEMI_AXIS_ACROSS: across,
-        bearing.RING_DISPLACEMENT: found.displacement.T[: len(DIRECTIONS)],
-        bearing.RING_STIFFNESS: np.diagonal(found.stiffness, axis1=1, axis2=2).T[: len(DIRECTIONS)],
-        bearing.BALL_DIAMETER: of.ball_diameter,
-        bearing.PITCH_DIAMETER: of.pitch_diameter,
-        bearing.CONTACT_ANGLE: found.contact_angle,
-        bearing.LEFT_OUT: omitted,
-        **tones_group(turning),
-    }
-
-
-def tones_group(turning: Kinematics) -> Values:
-    """Lay out what turns how fast."""
-    return {
-        bearing.PART: list(PARTS),
-        bearing.TONE: [turning.tone(part) for part in PARTS],
-        bearing.MODULATION: [turning.modulation(part) for part in PARTS],
-        bearing.TURNING: turning.turning,
-        bearing.CAGE: turning.cage,
-    }
 
 
 # --- in time

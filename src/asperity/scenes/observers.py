@@ -1,6 +1,7 @@
 """What is looked at in runs of this program, one file each, in the order in which results lay it out."""
 
 from asperity.scenes import (
+    bearing_at_rest,
     bearing_creepage,
     bearing_film,
     bearing_levels,
@@ -20,5 +21,11 @@ OVER_STRUCTURES = (
     creep.OBSERVER,
 )
 """Of bodies that roll over structures."""
-OF_BEARINGS = (bearing_levels.OBSERVER, bearing_film.OBSERVER, bearing_creepage.OBSERVER, run_up.OBSERVER)
+OF_BEARINGS = (
+    bearing_at_rest.OBSERVER,
+    bearing_levels.OBSERVER,
+    bearing_film.OBSERVER,
+    bearing_creepage.OBSERVER,
+    run_up.OBSERVER,
+)
 """Of ball bearings."""

@@ -81,6 +81,7 @@ def _of_bearing(tree: xarray.DataTree) -> dict[str, Any]:
         .sel(at, drop=True)
         .isel({bearing.SENSOR.name: 0}, missing_dims="ignore", drop=True)
         for entry, at in bearing.KEPT.items()
+        if entry.name in tree[entry.group]
     }
     for entry in (bearing.BAND_VELOCITY, bearing.BAND_DEVIATION):
         found[entry.name] = found[entry.name].rename(judged_band="range")
