@@ -15,7 +15,7 @@ from asperity.reporting.figure import PageFigure
 from asperity.reporting.page import Block, figures_page
 from asperity.reporting.panels import log_axis
 from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
-from asperity.scenes.bearing import static_group
+from asperity.scenes.bearing_at_rest import static_group
 from asperity.scenes.figures.bearing import ball_contacts_table, bands_table
 from asperity.schema import tree
 from asperity.structures.ball_bearing import PARTS
