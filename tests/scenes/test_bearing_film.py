@@ -16,6 +16,7 @@ from asperity.scenes.bearing_film import OBSERVER
 from asperity.scenes.computed_bearing import compute_bearing
 from asperity.scenes.figures.bearing import ball_films, films_table
 from asperity.schema import Entry
+from asperity.studies.member import kept
 from asperity.surfaces.raceway import Raceway
 
 OF_THREE = {
@@ -32,6 +33,12 @@ WAVE = 50e-9
 def films(runs):
     """A run with oil, of which nothing vibrates."""
     return runs(OF_THREE | OIL)
+
+
+def test_a_study_keeps_films_and_does_without(films, runs):
+    of = kept(films)
+    assert of["heaviest_film"].values == pytest.approx(films["bearing/heaviest_film"].values)
+    assert {"heaviest_film", "heaviest_film_parameter"} & {*kept(runs(OF_THREE)).variables} == set()
 
 
 def test_films_are_those_of_the_formula_under_the_loads_of_the_balls(films):

@@ -148,6 +148,7 @@ class BearingKeys(BearingGeometry):
         SPEEDS,
     )
     contact_damping: float = key(DAMPING, "0 N s/m", "damping of each contact, for --table", _DAMPED)
+    lubricant: LubricantKeys = section(LubricantKeys, "the oil: how thick its films are")
 
 
 CARRIED = {"radial": "N", "axial": "N", "speed": "Hz", "contact_damping": "N s/m"}
@@ -156,17 +157,19 @@ CARRIED = {"radial": "N", "axial": "N", "speed": "Hz", "contact_damping": "N s/m
 
 def _of_case(keys: dict[str, Any], source: str) -> dict[str, Any]:
     """Bearing and load of a file; of a case that is read as one what concerns them."""
+    toml.refuse_vast(keys, source)
     if "kind" not in keys:
         return keys
     case = BearingUnderLoad.read(keys, Origin.file(source))
     carried = {name: f"{float(getattr(case, name))!r} {unit}" for name, unit in CARRIED.items()}
-    return dict(keys.get("bearing", {})) | carried
+    carried["contact_damping"] = f"{0.5 * sum(case.dampings)!r} N s/m"
+    return dict(keys.get("bearing", {})) | carried | {"lubricant": keys.get("lubricant", {})}
 
 
 def bearing_of_run(text: str, source: str) -> BearingKeys:
     """Bearing, load and speed of a run by the text of its case, whose files need no longer be there."""
     keys = toml.read_toml(text, "case", source)
-    own = {name: keys[name] for name in ("kind", "bearing", *CARRIED) if name in keys}
+    own = {name: keys[name] for name in ("kind", "bearing", "lubricant", *CARRIED) if name in keys}
     return BearingKeys.read(_of_case(own, source), Origin.file(source))
 
 
@@ -175,10 +178,11 @@ def read_bearing(source: str, options: Mapping[str, Any]) -> BearingKeys:
     keys: dict[str, Any] = {"name": source}
     if source not in LISTED:
         definition = toml.read_definition(source, "bearing", named_bearings(source))
-        keys = toml.read_toml(definition, "bearing", source)
-        toml.refuse_vast(keys, source)
-        keys = _of_case(keys, source)
-    return BearingKeys.read(keys | {k: v for k, v in options.items() if v is not None}, Origin.file(source))
+        keys = _of_case(toml.read_toml(definition, "bearing", source), source)
+    typed: dict[str, Any] = {name: value for name, value in options.items() if value is not None}
+    if "lubricant" in typed and isinstance(known := keys.get("lubricant"), dict):
+        typed["lubricant"] = known | typed["lubricant"]
+    return BearingKeys.read(keys | typed, Origin.file(source))
 
 
 class ShaftKeys(Section):

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from asperity.case.ball_bearing import BearingKeys, bearing_of_run, read_bearing
+from asperity.cli.bearing_films import say_films
 from asperity.cli.bearing_table import write_table
 from asperity.cli.bearing_tolerances import say_tolerances
 from asperity.cli.heard import heard
@@ -26,12 +27,14 @@ from asperity.terminal import say, say_table
 from asperity.written_numbers import rounded
 
 WIDTH = 122
-TOLD = ("balls", "displacement", "stiffness", "imbalance", "tones", "speed", "speed_is", "tacho", "band",
-        "lines", "faults", "confidence", "resolution", "turns", "doubts", "signals", "verdict",
+TOLD = ("balls", "displacement", "stiffness", "imbalance", "films", "tones", "speed", "speed_is", "tacho",
+        "band", "lines", "faults", "confidence", "resolution", "turns", "doubts", "signals", "verdict",
         "catalogue", "tolerances")  # fmt: skip
 """Names of what is said to programs."""
 OPTIONS = ("radial", "axial", "speed", "clearance", "contact_damping")
 """Keys of a bearing and its load that are options, too."""
+OIL = ("oil", "temperature")
+"""Those of its lubricant."""
 MEANINGS = {
     "outer": "BPFO: balls pass a spot of it",
     "inner": "BPFI: balls pass a spot of it",
@@ -60,6 +63,8 @@ def show_bearing(
     large waves may be for `limits` of the bands. `more` are signals behind the first one.
     """
     options = {name: choices.pop(name, None) for name in OPTIONS}
+    oil = {name: value for name in OIL if (value := choices.pop(name, None)) is not None}
+    options["lubricant"] = oil or None
     if listed:
         return _listed()
     if source is None:
@@ -72,6 +77,8 @@ def show_bearing(
     looks_elsewhere = bool(signals) or picture is not None
     _refuse_mixed("--table", table, for_table, looks_elsewhere or limits is not None)
     _refuse_mixed("--limits", limits, {"outer-mass": outer_mass}, looks_elsewhere)
+    if oil and (signals or any(each is not None for each in (table, limits, sheet))):
+        raise InputError("--oil", "a signal, table, sheet or limits with it", "load and speed alone")
     if table is not None:
         told = write_table(source, options, table, cage_angle, load_direction)
         return {"bearing": source, **dict.fromkeys(TOLD), **told}
@@ -137,6 +144,10 @@ def _listed() -> dict[str, Any]:
 
 def _carried(keys: BearingKeys, picture: Path | None) -> dict[str, Any]:
     speed = keys.speed or 0.0
+    if keys.lubricant.found is not None and not speed:
+        raise InputError(
+            "speed", "none of a bearing with oil", "that at which its films are, as '1800 1/min'"
+        )
     doubt_speed(keys.bearing, speed)
     found = keys.bearing.loaded(keys.radial, keys.axial, speed=speed)
     load = f"{rounded(found.radial, 4)} N radial, {rounded(found.axial, 4)} N axial"
@@ -148,6 +159,7 @@ def _carried(keys: BearingKeys, picture: Path | None) -> dict[str, Any]:
     say(contacts.note)
     ends = dict.fromkeys(f"{each:.0f}" for each in (found.touching.min(), found.touching.max()))
     say(f"{' to '.join(ends)} of {found.bearing.balls} balls touch the inner ring while the cage turns.")
+    films = say_films(keys, found)
     _say_tones(turning, f"Hz at {rounded(60.0 * speed, 5)} 1/min" if speed else "per turn")
     say(f"Balance to {rounded(found.imbalance, 1)} of the load.")
     if picture is not None:
@@ -157,7 +169,7 @@ def _carried(keys: BearingKeys, picture: Path | None) -> dict[str, Any]:
     balls = {name: getattr(found, name)[0] for name in names}
     tones = {"cage": turning.cage} | {part: turning.tone(part) for part in PARTS}
     ring = {"displacement": found.displacement, "stiffness": found.stiffness, "imbalance": found.imbalance}
-    return {"balls": balls, **ring, "tones": tones if speed else None}
+    return {"balls": balls, **ring, "films": films, "tones": tones if speed else None}
 
 
 def _say_tones(turning: Kinematics, unit: str) -> None:

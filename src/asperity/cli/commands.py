@@ -366,6 +366,8 @@ BEARING = [
     click.Option(["--axial"], metavar="FORCE", help="Axial load on it."),
     click.Option(["--speed"], metavar="SPEED", help="Of the ring that turns, as '1800 1/min'."),
     click.Option(["--clearance"], metavar="LENGTH", help="Diametral clearance, as '10 um'."),
+    click.Option(["--oil"], metavar="GRADE", help="Oil between balls and raceways, as 'ISO VG 68': films."),
+    click.Option(["--temperature"], metavar="DEGREES", help="Of the oil. [default: '70 degC']"),
     click.Option(
         ["--signal"],
         type=PATH,
