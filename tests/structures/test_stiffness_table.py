@@ -169,6 +169,10 @@ def test_over_cage_angles_rows_say_which():
     assert [row["cage angle (rad)"] for row in rows] == pytest.approx(np.radians([0.0, 20.0, 40.0]))
     expected = B6205.loaded(100.0, cage_angles=np.radians([0.0, 20.0, 40.0])).stiffness[:, 0, 0]
     assert [row["kxx (N/m)"] for row in rows] == pytest.approx(expected)
+    passing = 2.0 * math.pi / 9 * np.arange(24) / 24
+    mean = stiffness_table(B6205, 100.0, cage_angles=passing).stiffness[0, 0, 0].mean(axis=0)
+    np.testing.assert_allclose(stiffness_table(B6205, 100.0).stiffness[0, 0, 0, 0], mean, rtol=1e-9, atol=1.0)
+    assert abs(mean[0, 0] / expected[0] - 1.0) > 0.01
     said = call("bearing", "6205", "--radial", "100 N", "--table", "k.csv").stdout
     assert "No damping is known of a bearing: give that of each contact with --damping" in said
 
