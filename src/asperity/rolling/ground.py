@@ -116,10 +116,11 @@ def _on_rail(ground: Ground, rail: RailBetween, course: Course) -> Ground:
     n = course.contacts
     on_rail = course.mechanism.on_rail
     ways = [course.mechanism.contacts[k].sides[0].trajectory for k in np.flatnonzero(on_rail).tolist()]
-    given = np.array([way.rates(range(course.total + 1)) for way in ways])
+    every = course.total + 1
+    given = np.concatenate([way.rates(range(1 if way.spacing else every)) for way in ways])
     same = np.allclose(given, kernel.speed, rtol=1e-9, atol=0.0)
     if not (same and np.isclose(course.time_step, kernel.time_step, rtol=1e-9, atol=0.0)):
-        other = given.flat[np.abs(given - kernel.speed).argmax()]
+        other = given[np.abs(given - kernel.speed).argmax()]
         received = f"{other:.6g} m/s in steps of {course.time_step:.6g} s"
         made = f"{kernel.speed:.6g} m/s and {kernel.time_step:.6g} s"
         allowed = f"{made}, for which the rail's kernel was computed"
