@@ -112,14 +112,14 @@ WAVY = BallBearing(5, 8e-3, 8e-3 * COSINE / 0.2, contact_angle=math.acos(COSINE)
 """f_c = 0.4 f_r."""
 
 
-def turned(speed, duration, *, order=6, **keys):
-    """Five balls on linear contacts, over so many waves of the outer raceway of 0.1 um."""
+def turned(speed, duration, *, order=6, part=1, **keys):
+    """Five balls on linear contacts, over so many waves of 0.1 um of the inner (0) or outer (1) raceway."""
     angle = math.acos(COSINE)
-    radius = WAVY.raceway_radii[1]
+    radius = WAVY.raceway_radii[part]
     spacing = 2.0 * np.pi * radius / (200 * order)
     along = np.arange(-20, 200 * order + 21)
     wavy = StateTexture.unfiltered(-1e-7 * np.cos(2.0 * np.pi * along / 200), spacing, -20 * spacing)
-    laws = [Linear(10.0, 1e5, texture=each, damping=2.0) for each in (None, wavy)]
+    laws = [Linear(10.0, 1e5, texture=each, damping=2.0) for each in (wavy, None)[:: 1 - 2 * part]]
     rings = BearingRings(
         Ring.rigid(0.01, angle),
         Ring.rigid(1.0, angle, radial_stiffness=9e8, axial_stiffness=9e8, damping_ratio=0.3),
@@ -146,6 +146,16 @@ def test_lines_of_a_run_up_are_those_of_constant_speeds_over_orders(run_up):
     assert orders[lines[0][1:].argmax() + 1] == pytest.approx(2.0)
     assert_allclose(lines[0][8:13], lines[1][8:13], atol=0.02 * lines[1].max())
     assert_allclose(run_up.cage[-1] - run_up.cage[0], 2.0 * np.pi * 0.4 * 5.0, rtol=1e-9)
+
+
+def test_waves_of_the_ring_that_turns_are_met_at_their_order():
+    """Five waves of the inner raceway move it along the axis as they pass the balls, 5 (1 − 0.4) a turn."""
+    run = turned(SpeedCourse([0.0, 0.8], [4.0, 6.0]), 0.8, order=5, part=0)
+    angle = np.arange(0.0, 4.0, 1.0 / 128.0)
+    held = np.interp(angle, 4.0 * run.time + 1.25 * run.time**2, run.inner_motion[2])
+    lines = np.abs(np.fft.rfft(held - held.mean()))
+    assert lines.argmax() == 12
+    assert lines[12] > 10.0 * np.delete(lines, [11, 12, 13]).max()
 
 
 def test_a_slow_run_up_passes_through_constant_speeds_band_by_band(run_up):
@@ -176,3 +186,5 @@ def test_an_unbalance_goes_with_the_square_of_the_speed():
     radius = np.hypot(*run.inner_motion[:2])
     shares = [radius[abs(2.0 + 4.0 * run.time - speed) < 0.2].mean() for speed in (2.2, 3.8)]
     assert shares[1] / shares[0] == pytest.approx((3.8 / 2.2) ** 2, rel=0.03)
+    angle = np.unwrap(np.arctan2(run.inner_motion[1], run.inner_motion[0]))
+    assert_allclose(angle - angle[0], 2.0 * np.pi * (2.0 * run.time + 2.0 * run.time**2), atol=0.1)

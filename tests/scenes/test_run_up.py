@@ -4,7 +4,11 @@ import numpy as np
 import pytest
 
 import asperity
+from asperity.case.cases import as_case
+from asperity.diagnostics.orders import RunUp
+from asperity.scenes.computed_bearing import cage_slip
 from asperity.scenes.report import CHAPTERS, figures_of
+from asperity.scenes.run_up import laid_on_speeds
 from asperity.schema import bearing
 from small_cases import BEARING
 
@@ -45,6 +49,31 @@ def test_the_pit_is_found_over_angle_at_its_order(tree):
     near = np.abs(order / ORDER - np.round(order / ORDER)) * ORDER
     low = (order > 0.6 * ORDER) & (order < 4.4 * ORDER)
     assert amplitude[low & (near < 0.1)].max() > 5.0 * np.median(amplitude[low & (near > 0.5)])
+
+
+def test_slip_of_the_cage_is_drawn_at_its_turns_at_any_speed():
+    """Over turns of the cage it is that of a constant speed."""
+    slips = {"cage_slip": [0.0, 0.1], "settling": "0 s", "duration": "0.5 s"}
+    steady, changing = (
+        cage_slip(as_case(BEARING | slips | {"speed": each}))
+        for each in ("4500 1/min", "3000..4500 1/min in 0.5 s")
+    )
+    time = np.linspace(0.0, 0.5, 50)
+    turns = 50.0 * time + 25.0 * time**2
+    assert changing(time) == pytest.approx(steady(turns / 75.0))
+    assert np.ptp(changing(time)) > 0.02
+
+
+def test_pieces_of_one_range_of_speeds_are_their_mean_square_and_lines_of_one_range_the_highest():
+    frequency = np.arange(1025.0)
+    amplitude = np.array([3.0, 4.0, 1.0])[:, None] * np.where(frequency % 2.0 > 0.0, 1.0, 0.1)
+    found = laid_on_speeds(RunUp(np.array([10.0, 10.5, 40.0]), frequency, amplitude), 1023.0)
+    assert found[bearing.RUN_UP_SPEED] == pytest.approx([15.0, 25.0, 35.0])
+    assert found[bearing.RUN_UP_FREQUENCY][:2] == pytest.approx([0.5, 2.5])
+    levels = found[bearing.RUN_UP_AMPLITUDE]
+    assert levels[0] == pytest.approx(np.sqrt(12.5))
+    assert np.isnan(levels[1]).all()
+    assert levels[2] == pytest.approx(1.0)
 
 
 def test_the_run_up_is_laid_on_speeds_and_drawn(tree):

@@ -112,6 +112,7 @@ def test_every_format_holds_the_same_signal():
         with xarray.open_dataset(f"set/{row['file']}") as opened:
             np.testing.assert_array_equal(opened["signal"][0], signal)
             assert opened["time"].values[1] == 1 / 51_200
+            assert (opened["tacho_speed"].values == 30.0).all()
             case = parse_case(opened.attrs["case"])
             assert (case.fault.on or "none") == opened.attrs["fault.on"] == row["fault.on"]
             assert f"{opened.attrs['fault.length']}" == row["fault.length [m]"]

@@ -11,6 +11,7 @@ from xarray import DataTree
 
 from asperity.arguments import Array, NDArray
 from asperity.case import any_case, cases, form, rolled_over, scene
+from asperity.case.speed import refuse_course
 from asperity.case.surface import DEFECTS, LENGTH, LEVEL, Surface
 from asperity.errors import InputError
 from asperity.optimising.allocation import Limits
@@ -149,6 +150,7 @@ def bands_of(case: scene.Case, longest: float | None, shortest: float | None) ->
     Those between two wavelengths, m, may be changed; by default those that are heard, from 20 Hz to the
     highest frequency of the spectra. Waves that the grid of the contact cannot hold are left out.
     """
+    refuse_course(case.speed, "where bands of a texture are heard at frequencies")
     surface = case.surface
     lateral = surface.lateral
     if lateral is None and not surface.has_line:

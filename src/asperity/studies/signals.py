@@ -34,6 +34,8 @@ from asperity.case.ball_bearing import BearingUnderLoad
 from asperity.case.table_headings import heading_of
 from asperity.errors import InputError
 from asperity.results import save, variable
+from asperity.schema.bearing import TACHO
+from asperity.speeds import speed_at
 from asperity.store import content_key
 from asperity.structures.ball_bearing import PARTS
 from asperity.studies import rates
@@ -203,6 +205,7 @@ class SignalSet:
                 "time": variable("time", time, "s", "time"),
                 "sensor": variable("sensor", np.array(case.sensors), "rad", "angle from the radial load"),
                 SIGNAL: variable(("sensor", "time"), signal, UNIT, "acceleration at the sensor"),
+                TACHO.name: variable("time", speed_at(case.speed, time), TACHO.units, TACHO.long_name),
             }
             save(xarray.DataTree(xarray.Dataset(held, attrs={**told, "case": case.text})), file)
             return
