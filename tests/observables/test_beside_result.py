@@ -144,6 +144,12 @@ def test_a_bearing_is_off_in_bands_lines_and_tones(beside):
     tone, _ = deviations(tree, "bearing tone")
     tones = [*map(case.kinematics.tone, ("outer", "inner", "ball")), case.kinematics.cage]
     assert np.abs(tone[0] - 20.0 * np.log10(107.0 / np.array(tones))).min() < 1e-9
+    table = beside_table(tree)
+    cells = {row[0].text: [cell.text for cell in row[1:]] for row in table.rows[:2]}
+    assert cells["bearing tone"][:2] == ["107 Hz", "107 Hz"]
+    assert cells["bearing tone"][3:] == [f"−{abs(tone[0]):.3f}", "± 0.02"]
+    assert cells["bearing band velocity"] == ["100 Hz", "20 µm/s", "10 µm/s", "+6.0", "± 2.6"]
+    assert f"Bearing tone: {abs(tone[0]):.2g} dB rms in 1 value, 1 of them beyond" in table.note
 
 
 def test_a_run_lays_it_out_unless_it_is_brief(beside, monkeypatch):

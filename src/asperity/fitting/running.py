@@ -83,8 +83,8 @@ def fit(
     case : path, mapping or case object
         The case, as `asperity.run` takes it.
     measured : path, `Measured`, or a list of them, optional
-        Tables of what was measured, or objects; by default what the case itself names (``track.decay_rates``,
-        ``track.mobility``, ``noise.measured_bands``).
+        Tables of what was measured, or objects; by default what the case itself names (keys of ``measured``,
+        ``track.decay_rates``, ``track.mobility``, ``noise.measured_bands``).
     free : list of str, or mapping, optional
         Dotted keys that may change, as ``"track.pad_stiffness"`` or ``"track.pad_stiffness = 100..2000
         MN/m"``; or keys with their least and largest value, ``{"track.pad_stiffness": (1e8, 2e9)}``. By

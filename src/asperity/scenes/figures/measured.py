@@ -127,8 +127,8 @@ def _how_far(apart: chart.Numbers, deviation: chart.Numbers, of: str) -> tuple[s
     outside = int(np.sum(np.abs(apart[known]) > TWICE * deviation[known]))
     rms = float(np.sqrt(np.mean(apart[known] ** 2)))
     values = count_of(int(known.sum()), of)
-    told = f"{rms:.1f} dB rms in {values}, {outside} of them beyond 95 % of what measuring and chance explain"
-    return told, outside
+    beyond = f"{outside} of them beyond 95 % of what measuring and chance explain"
+    return f"{_decibels(rms)} dB rms in {values}, {beyond}", outside
 
 
 # --- beside the track
@@ -292,16 +292,23 @@ def beside_table(tree: DataTree) -> ReportTable | None:
     def in_units(entry: Entry) -> Iterator[str]:
         """Values with their units; of levels a tenth of a decibel."""
         for value, unit in zip(data.values(tree, entry).tolist(), units.tolist(), strict=True):
-            number = f"{round(value, 1) + 0.0:.1f}" if unit.startswith("dB re") else rounded(value, 3)
-            yield f"{number.replace('-', '−')} {unit}" if np.isfinite(value) else "–"
+            scale, shown = _SHOWN.get(unit, (1.0, unit))
+            number = f"{round(value, 1) + 0.0:.1f}" if unit.startswith("dB re") else rounded(scale * value, 4)
+            yield f"{number.replace('-', '−')} {shown}" if np.isfinite(value) else "–"
 
+    plain = np.zeros(len(apart), dtype=bool)
+    coarse, fine = (tables.change_cells(apart, plain, places=places) for places in (1, 3))
+    differences = [fine[n] if sure < SURE else coarse[n] for n, sure in enumerate(deviation)]
     columns = {
         "quantity": text_cells(names),
         "at": text_cells(_place(at, unit_in_brackets(axis)) for at, axis in places),
         "measured": text_cells(in_units(beside.VALUE)),
         "computed": text_cells(in_units(beside.COMPUTED)),
-        "measured over computed / dB": tables.change_cells(apart, np.abs(apart) <= TWICE * deviation),
-        "95 % / dB": tables.number_cells(TWICE * deviation, "± {:.1f}"),
+        "measured over computed / dB": [
+            Cell(f"({cell.text})", "number faint") if explained else cell
+            for cell, explained in zip(differences, np.abs(apart) <= TWICE * deviation, strict=True)
+        ],
+        "95 % / dB": tables.number_cells(TWICE * deviation, lambda each: f"± {_decibels(each)}"),
     }
     told = list[str]()
     off = 0
@@ -316,6 +323,17 @@ def beside_table(tree: DataTree) -> ReportTable | None:
     return table(
         "beside_measured", "Measured against computed", columns, " ".join([note, *told, *[NEXT] * (off > 0)])
     )
+
+
+SURE = 0.05
+"""Standard deviation, dB, below which a tenth of a decibel is too coarse, as of a tone."""
+_SHOWN = {"m/s": (1e6, "µm/s"), "N/m": (1e-6, "MN/m")}
+"""Units in which values are read well, and how many of them make one in SI."""
+
+
+def _decibels(size: float) -> str:
+    """A size in decibels, finer where it is small."""
+    return f"{size:.1f}" if size >= TWICE * SURE else rounded(size, 2)
 
 
 def _place(at: float, unit: str) -> str:
