@@ -16,9 +16,7 @@ from asperity.errors import InputError
 from asperity.files import write_bytes
 from asperity.reference.bearings import COLUMNS, LISTED, PITCH, TONES, by_citation, named_bearings
 from asperity.reporting.figure import write_chart
-from asperity.running import open_result
 from asperity.scenes.bearing_at_rest import static_group
-from asperity.scenes.bearing_sheet import bearing_sheet
 from asperity.scenes.figures.bearing import ball_contacts_table, load_zone
 from asperity.schema import tree
 from asperity.structures.ball_bearing import PARTS, Kinematics
@@ -107,6 +105,9 @@ def show_bearing(
 
 def _write_sheet(source: str, options: Mapping[str, Any], sheet: Path) -> dict[str, Any]:
     """Write the data sheet of a bearing, or of a run with what its parts make in the bands."""
+    from asperity.running import open_result
+    from asperity.scenes.bearing_sheet import bearing_sheet
+
     if sheet.suffix.lower() != ".html":
         raise InputError("--sheet", f"'{sheet}'", "a name that ends in .html")
     run = open_result(source) if Path(source).is_dir() or source.endswith(".nc") else None
