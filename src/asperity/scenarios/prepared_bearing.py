@@ -25,11 +25,19 @@ from asperity.speeds import slowest
 from asperity.store import Store
 from asperity.structures.ball_bearing import PARTS
 from asperity.structures.bearing_statics import doubt_speed
+from asperity.structures.roller_bearing import AnyBearing
 from asperity.surfaces.raceway import Raceway
 from asperity.written_numbers import in_newtons, rounded
 
 RINGS = ("inner", "outer")
 NAMES = {"outer": "outer raceway", "inner": "inner raceway", "ball": "balls"}
+
+
+def names_in(bearing: AnyBearing) -> dict[str, str]:
+    """Names of the parts of a bearing: what rolls in it is balls or rollers."""
+    return NAMES | {"ball": f"{bearing.ELEMENT}s"}
+
+
 ON = {
     "inner_raceway": "the inner raceway",
     "outer_raceway": "the outer raceway",
@@ -37,10 +45,6 @@ ON = {
     "fault": "the fault",
 }
 """Sections of a case that say what is on a part."""
-LEFT_OUT = (
-    "There is no film of lubricant, no friction, no shoulder of a groove, and no tilt of a ring; the contact "
-    "angle is that of the static load."
-)
 OILED = (
     "Contacts are full of oil; there is no friction, no shoulder of a groove, and no tilt of a ring; contact "
     "angle and static loads are those without oil."
@@ -51,6 +55,11 @@ CELL_TIME = 3.5e-8
 """Time of a contact under a load over a fault, for each of its cells, s."""
 SEEDS = 1000
 """Seeds of the parts of a bearing lie beside each other, and no two bearings share any."""
+
+
+def named_on(case: BearingUnderLoad, section: str) -> str:
+    """What a section of a case is about that says what is on a part."""
+    return f"the {names_in(case.bearing.bearing)['ball']}" if section == "balls" else ON[section]
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,13 +185,18 @@ def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], preparin
     parts["contacts over the faults"] = CELL_TIME * _cells_over_faults(prepared)
     pace = run_time.pace()
     taken = run_time.RunTime({part: pace * seconds for part, seconds in parts.items()})
-    tones = ", ".join(f"{NAMES[part]} {rounded(turning.tone(part), 4)} Hz" for part in PARTS)
+    tones = ", ".join(
+        f"{names_in(found.bearing)[part]} {rounded(turning.tone(part), 4)} Hz" for part in PARTS
+    )
     load, angle = max(load for _, load in case.contacts), np.degrees(found.contact_angle)
     touching, at_rest = (each.static.touching for each in (case, case.with_(centrifugal=False)))
     held = f"{rounded(touching.mean())} of {found.bearing.balls} on average, {touching.min():.0f} or more"
     rows = [
-        ("heaviest load of a ball", f"{in_newtons(load)}, contact angle {rounded(angle)}°"),
-        ("balls that touch both rings", f"{held}; at rest {rounded(at_rest.mean())}"),
+        (
+            f"heaviest load of a {found.bearing.ELEMENT}",
+            f"{in_newtons(load)}, contact angle {rounded(angle)}°",
+        ),
+        (f"{found.bearing.ELEMENT}s that touch both rings", f"{held}; at rest {rounded(at_rest.mean())}"),
         ("tones", f"{tones}; cage {rounded(turning.cage, 4)} Hz"),
         (
             "time",
@@ -225,7 +239,7 @@ def films_in_words(prepared: PreparedBearing) -> list[tuple[str, str]]:
 
 def omitted_from(case: BearingUnderLoad) -> str:
     """What is not in the computation of a bearing, with oil or without."""
-    return LEFT_OUT if case.films is None else OILED
+    return str(case.bearing.bearing.LEFT_OUT) if case.films is None else OILED
 
 
 def _cells_over_faults(prepared: PreparedBearing) -> float:

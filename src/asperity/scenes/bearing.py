@@ -19,11 +19,12 @@ from asperity.errors import PhysicsWarning, percent, warn_of_findings
 from asperity.progress import Progress
 from asperity.rolling.bearing import RolledBearing, steady_where_still
 from asperity.scenarios.prepared_bearing import (
-    NAMES,
     ON,
     RINGS,
     PreparedBearing,
     bearing_parts,
+    named_on,
+    names_in,
     omitted_from,
     prepare_bearing,
 )
@@ -54,7 +55,6 @@ SOURCES = (
     "ISO 15242-2 (velocities in three bands).",
     "R. B. Randall and J. Antoni, Mechanical Systems and Signal Processing 25 (2011) 485 (envelope).",
     "J. Antoni, Mechanical Systems and Signal Processing 21 (2007) 108 (spectral kurtosis, of the band).",
-    "H. Hertz, J. reine angew. Math. 92 (1882) 156 (contact of smooth bodies).",
 )
 
 
@@ -87,10 +87,13 @@ def bearing_result(
     result.attrs = root_attributes(
         case,
         case.title,
-        (*SOURCES, *seen.sources),
+        (*SOURCES, case.bearing.bearing.SOURCE, *seen.sources),
         _verdict(case, heard, _deciding(apart)),
         caught,
-        {NAMES[name]: f"{draw} on {radius:.6g} m, seed {case.seed}" for name, draw, radius in _draws(case)},
+        {
+            names_in(case.bearing.bearing)[name]: f"{draw} on {radius:.6g} m, seed {case.seed}"
+            for name, draw, radius in _draws(case)
+        },
     )
     return result
 
@@ -219,6 +222,7 @@ def _verdict(case: BearingUnderLoad, heard: Values, deciding: Sequence[str]) -> 
 
     Without, beats of waves of the parts lie in the envelope, some of them where lines of others would.
     """
+    of = case.bearing.bearing
     velocities = heard[bearing.BAND_VELOCITY][0][0]
     told = ", ".join(
         f"{rounded(1e6 * rms)} µm/s in {band}{part}"
@@ -228,12 +232,12 @@ def _verdict(case: BearingUnderLoad, heard: Values, deciding: Sequence[str]) -> 
     lines = zip(PARTS, heard[bearing.LINES_FOUND][0], heard[bearing.LINE_FREQUENCY][0], strict=True)
     at_speed = f" at {rounded(60.0 * case.speed, 5)} 1/min" if isinstance(case.speed, SpeedCourse) else ""
     parts = " and of the ".join(
-        f"{NAMES[part]} ({rounded(at[0], 4)} Hz{at_speed})" for part, found, at in lines if found
+        f"{names_in(of)[part]} ({rounded(at[0], 4)} Hz{at_speed})" for part, found, at in lines if found
     )
     law = heard[bearing.LAW][0]
     lead = f"Radial velocity by {law}: {told or 'no band is sampled'}"
     if not np.nan_to_num(velocities).any() and told:
-        lead = f"Nothing vibrates by {law}: all balls are carried alike, on surfaces without waves"
+        lead = f"Nothing vibrates by {law}: all {of.ELEMENT}s are carried alike, on surfaces without waves"
     struck = f" Its envelope has lines of {f'the {parts}' if parts else 'no part'}." if case.faults else ""
     return f"{lead}.{struck} {omitted_from(case)}"
 
@@ -247,7 +251,7 @@ def alone(prepared: PreparedBearing, progress: Progress) -> Values:
     textured = [key for key in ON if getattr(case, key).given()]
     if not textured:
         return {}
-    names = ["perfect surfaces", *(ON[key] for key in textured)]
+    names = ["perfect surfaces", *(named_on(case, key) for key in textured)]
     found = list[Array]()
     if len(case.faults) > 1:
         names[-1] = "the faults"

@@ -3,7 +3,7 @@
 import numpy as np
 
 from asperity.arguments import Array
-from asperity.scenarios.prepared_bearing import LEFT_OUT, RINGS, omitted_from
+from asperity.scenarios.prepared_bearing import RINGS, omitted_from
 from asperity.scenes.computed_bearing import ComputedBearing
 from asperity.scenes.observer import Observer
 from asperity.schema import Values, bearing
@@ -13,7 +13,7 @@ from asperity.structures.bearing_statics import LoadedBearing
 DIRECTIONS = ("along", "across", "axial")
 
 
-def static_group(found: LoadedBearing, turning: Kinematics, omitted: str = LEFT_OUT) -> Values:
+def static_group(found: LoadedBearing, turning: Kinematics, omitted: str = "") -> Values:
     """Lay out how a bearing carries its load, and what turns how fast."""
     of = found.bearing
     along, across = np.transpose([found.semi_axes(ring) for ring in RINGS], (1, 0, 2, 3))
@@ -37,7 +37,8 @@ def static_group(found: LoadedBearing, turning: Kinematics, omitted: str = LEFT_
         bearing.BALL_DIAMETER: of.ball_diameter,
         bearing.PITCH_DIAMETER: of.pitch_diameter,
         bearing.CONTACT_ANGLE: found.contact_angle,
-        bearing.LEFT_OUT: omitted,
+        bearing.ELEMENT: of.ELEMENT,
+        bearing.LEFT_OUT: omitted or of.LEFT_OUT,
         **tones_group(turning),
     }
 
@@ -62,6 +63,7 @@ def at_rest(computed: ComputedBearing) -> Values:
 OBSERVER = Observer(
     "bearing_at_rest",
     (
+        bearing.ELEMENT,
         bearing.LEFT_OUT,
         bearing.RING,
         bearing.BALL,

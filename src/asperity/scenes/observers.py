@@ -1,6 +1,7 @@
 """What is looked at in runs of this program, one file each, in the order in which results lay it out."""
 
 from asperity.scenes import (
+    along_rollers,
     bearing_at_rest,
     bearing_creepage,
     bearing_film,
@@ -23,9 +24,10 @@ OVER_STRUCTURES = (
 """Of bodies that roll over structures."""
 OF_BEARINGS = (
     bearing_at_rest.OBSERVER,
+    along_rollers.OBSERVER,
     bearing_levels.OBSERVER,
     bearing_film.OBSERVER,
     bearing_creepage.OBSERVER,
     run_up.OBSERVER,
 )
-"""Of ball bearings."""
+"""Of bearings."""

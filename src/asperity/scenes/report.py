@@ -60,7 +60,7 @@ CHAPTERS = (
     Chapter(
         "load",
         "How it carries its load",
-        (bearing.ball_turn, bearing.ball_films),
+        (bearing.ball_turn, bearing.along_roller, bearing.ball_films),
         (bearing.ball_contacts_table, bearing.films_table, bearing.ball_sliding_table),
     ),
     Chapter(

@@ -60,6 +60,7 @@ RING_STIFFNESS = _bearing(
 BALL_DIAMETER = _fact("ball_diameter", "m", "diameter of a ball")
 PITCH_DIAMETER = _fact("pitch_diameter", "m", "diameter of the circle of the balls' centres")
 CONTACT_ANGLE = _fact("contact_angle", "rad", "contact angle of the run, mean of the static ones")
+ELEMENT = _fact("element", "text", "what rolls in it: ball or roller")
 LEFT_OUT = _fact("left_out", "text", "what is not in the computation")
 
 # --- its oil
@@ -88,6 +89,18 @@ FILM_HEATING = _film("film_heating(ring)", "1", "share of the film that the heat
 ASPERITY_SHARE = _film("asperity_share(ring)", "1", "share of the heaviest load that asperities carry")
 OIL_VISCOSITY = _oil("oil_viscosity", "Pa s", "viscosity of the oil at its temperature, without pressure")
 OIL_PRESSURE = _oil("oil_pressure_viscosity", "1/Pa", "its pressure-viscosity coefficient")
+
+# --- along the roller that carries most
+
+OF_ROLLERS = "of a roller bearing"
+ALONG_ROLLER, LINE_LOAD, LINE_PRESSURE = (
+    Entry("bearing", f"{name}", units, meaning, condition=OF_ROLLERS)
+    for name, units, meaning in (
+        ("along_roller", "m", "place of a slice from the middle of the roller"),
+        ("line_load(ring, along_roller)", "N/m", "static load per length of the roller that carries most"),
+        ("line_pressure(ring, along_roller)", "Pa", "pressure of the slices of that roller"),
+    )
+)
 
 # --- what turns how fast
 

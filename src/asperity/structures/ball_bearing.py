@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from asperity.arguments import ArrayLike, not_negative, one_of, real, require, whole
 from asperity.contact.hertz import Hertz, in_groove
@@ -96,6 +96,16 @@ class BallBearing:
     >>> f"{loaded.inner_load.max():.0f} N, {loaded.inner_pressure.max() / 1e9:.2f} GPa"
     '68 N, 1.06 GPa'
     """
+
+    ELEMENT: ClassVar = "ball"
+    """What rolls in it."""
+    LEFT_OUT: ClassVar = (
+        "There is no film of lubricant, no friction, no shoulder of a groove, and no tilt of a ring; the "
+        "contact angle is that of the static load."
+    )
+    """What no computation of it has."""
+    SOURCE: ClassVar = "H. Hertz, J. reine angew. Math. 92 (1882) 156 (contact of smooth bodies)."
+    """Of its contacts."""
 
     balls: int = parameter(
         Number(at_least=3, whole=True), 9, "number of balls", "3 to 500: bearings lie between"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from asperity.arguments import ArrayLike, one_of, require
 from asperity.contact.crowning import FORMS, OF_DIAMETER, Crowning, Form
@@ -86,6 +86,16 @@ class RollerBearing:
     >>> f"{loaded.inner_load.max():.0f} N, {loaded.inner_pressure.max() / 1e9:.2f} GPa"
     '889 N, 1.41 GPa'
     """
+
+    ELEMENT: ClassVar = "roller"
+    """What rolls in it."""
+    LEFT_OUT: ClassVar = (
+        "There is no film of lubricant, no friction, no rib, and no tilt of a ring while it turns; slices of "
+        "a roller do not know of each other, nor of sharp ends."
+    )
+    """What no computation of it has."""
+    SOURCE: ClassVar = "ISO/TS 16281:2008 (load and stiffness of rollers by slices)."
+    """Of its contacts."""
 
     rollers: int = parameter(
         Number(at_least=3, whole=True), 13, "number of rollers", "3 to 500: bearings lie between"

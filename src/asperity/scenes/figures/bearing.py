@@ -36,6 +36,15 @@ RIGHT_ANGLES = tuple((each, plain(each)) for each in (-180.0, -90.0, 0.0, 90.0, 
 AROUND = chart.Axis("azimuth from the radial load / °", -185.0, 185.0, ticks=RIGHT_ANGLES)
 
 
+def _element(tree: DataTree) -> str:
+    """What rolls in the bearing: a ball, or a roller."""
+    return str(data.stated(tree, bearing.ELEMENT) or "ball")
+
+
+def _named(tree: DataTree, part: str) -> str:
+    return f"{_element(tree)}s" if part == "ball" else NAMES[part]
+
+
 def _main(tree: DataTree) -> str:
     return data.main_law(tree, bearing.LINES_FOUND)
 
@@ -93,7 +102,7 @@ def load_zone(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
             place = azimuth[np.minimum(balls, len(azimuth)) - 1]
             against = -1.0 if data.case_words(tree, "bearing.turning") == "outer" else 1.0
             (x, y), middle = _at(0.5 * ball, place + against * where), _at(0.5 * pitch, place)
-        named = f"{'faults' if len(faults) > 1 else 'fault'} of the {NAMES[part]}", COLOURS[part]
+        named = f"{'faults' if len(faults) > 1 else 'fault'} of the {_named(tree, part)}", COLOURS[part]
         marks.append(chart.Line(x + middle[0], y + middle[1], *named, width=0.0, marker="D"))
     if data.present(tree, bearing.SENSOR):
         sensors = _at(rim - 0.5 * RING * ball, data.values(tree, bearing.SENSOR))
@@ -102,8 +111,9 @@ def load_zone(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
     seen = "from the side, the radial load downwards"
     yield chart.Panel(side, replace(side, label=""), tuple(marks), seen, height=5.0, equal=True, plain=True)
     yield (
-        "To scale, but for the thickness of the rings, which is no part of the case. At rest, the first ball "
-        "below the load; balls are as dark, and bars as long, as their static load, the longest "
+        "To scale, but for the thickness of the rings, which is no part of the case. At rest, the first "
+        f"{_element(tree)} below the load; {_element(tree)}s are as dark, and bars as long, as their static "
+        "load, the longest "
         f"{in_newtons(outer.max())}. The bearing turns anticlockwise. Triangles: accelerometers."
     )
     for part, faults in every_fault.items():
@@ -111,7 +121,7 @@ def load_zone(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
         moved = data.values(tree, bearing.MODULATION)
         turns = ", where the record begins" if part in parts and moved[parts.index(part)] > 0.0 else ""
         one, which = ("Diamond", "fault") if len(faults) == 1 else ("Diamonds", "faults")
-        yield f"{one}: the {which} of the {NAMES[part]}{turns}."
+        yield f"{one}: the {which} of the {_named(tree, part)}{turns}."
 
 
 def _faults(tree: DataTree) -> dict[str, list[tuple[float, int]]]:
@@ -142,7 +152,7 @@ def _outer(contacts: list[int]) -> int:
 
 
 @figure(
-    "Load of a ball over a turn of the cage",
+    "Load over a turn of the cage",
     Of(bearing.BALL_AZIMUTH, "azimuth"),
     Of(rolling.CONTACT_FORCE, "inner force", "on the inner ring"),
     Of(rolling.CONTACT_FORCE, "outer force", "on the outer ring", one={rolling.CONTACT.name: _outer}),
@@ -167,8 +177,26 @@ def ball_turn(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
     ]
     yield chart.Panel(AROUND, chart.Axis("force / N", low=0.0), tuple(drawn), height=4.0)
     yield (
-        "Contact forces of the first ball by the main law in its last turn, over the load that it has at "
-        "rest."
+        f"Contact forces of the first {_element(tree)} by the main law in its last turn, over the load that "
+        "it has at rest."
+    )
+
+
+@figure(
+    "Pressure along the roller that carries most",
+    Of(bearing.ALONG_ROLLER),
+    Of(bearing.LINE_PRESSURE, "{ring} ring"),
+)
+def along_roller(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
+    """Pressures of the slices at rest, on both rings."""
+    drawn = tuple(
+        chart.Line(1e3 * lines.at, each.values / 1e9, each.label, *RINGS[ring], 1.4)
+        for each, ring in zip(lines.lines, RINGS, strict=True)
+    )
+    yield chart.Panel(chart.Axis("place along the roller / mm"), chart.Axis("pressure / GPa", low=0.0), drawn)
+    yield (
+        "Hertz's pressure on the middle line of each slice, at rest. Slices know no edge: where an end "
+        "carries that does not fall back, the pressure there is higher."
     )
 
 
@@ -269,8 +297,8 @@ def _tones(tree: DataTree, highest: float) -> list[chart.Mark]:
     count = len(data.values(tree, bearing.HARMONIC))
     return [
         chart.Rules(
-            at[at < highest], label=f"{NAMES[part]}: {tone:.1f} Hz and multiples", colour=COLOURS[part],
-            dashes=(2.0, 2.0)
+            at[at < highest], label=f"{_named(tree, part)}: {tone:.1f} Hz and multiples",
+            colour=COLOURS[part], dashes=(2.0, 2.0)
         )
         for part, tone in zip(data.words(tree, bearing.PART), data.values(tree, bearing.TONE), strict=True)
         for at in [tone * np.arange(1.0, count + 1.0)]
@@ -317,7 +345,9 @@ def envelope_spectrum(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | st
     found = data.of_law(tree, bearing.LINES_FOUND, main)
     where, size = (data.of_law(tree, each, main) for each in (bearing.LINE_FREQUENCY, bearing.LINE_AMPLITUDE))
     marks = [
-        chart.Line(where[row], size[row], f"{NAMES[part]}: found", COLOURS[part], width=0.0, marker="o")
+        chart.Line(
+            where[row], size[row], f"{_named(tree, part)}: found", COLOURS[part], width=0.0, marker="o"
+        )
         for row, part in enumerate(data.words(tree, bearing.PART))
         if found[row]
     ]
@@ -395,7 +425,7 @@ def lines_table(tree: DataTree) -> ReportTable:
     tones = data.values(tree, bearing.TONE)
     turning = data.number(tree, bearing.TURNING) or 1.0
     columns = {
-        "part": text_cells(NAMES[part] for part in data.words(tree, bearing.PART)),
+        "part": text_cells(_named(tree, part) for part in data.words(tree, bearing.PART)),
         "tone / Hz": number_cells(tones, "{:.2f}"),
         "orders": number_cells(tones / turning, "{:.3f}"),
         "side bands ± / Hz": number_cells(data.values(tree, bearing.MODULATION), "{:.2f}"),
@@ -415,7 +445,8 @@ def lines_table(tree: DataTree) -> ReportTable:
 def ball_contacts_table(tree: DataTree) -> ReportTable:
     """Contacts of each ball at rest."""
     degrees = _degrees(data.values(tree, bearing.AZIMUTH)[0])
-    columns = {"ball at": number_cells(np.round(degrees) + 0.0, "{:.0f}°")}
+    element = _element(tree)
+    columns = {f"{element} at": number_cells(np.round(degrees) + 0.0, "{:.0f}°")}
     shown = (
         (bearing.BALL_LOAD, "N", 1.0, in_digits(4)), (bearing.BALL_ANGLE, "°", np.pi / 180.0, "{:.1f}"),
         (bearing.SEMI_AXIS_ALONG, "along, mm", 1e-3, "{:.3f}"),
@@ -436,11 +467,12 @@ def ball_contacts_table(tree: DataTree) -> ReportTable:
         for way, to, each in zip(data.words(tree, bearing.DIRECTION), moved, stiffness, strict=True)
     )
     note = (
-        "At rest, the first ball below the load: load, contact angle, half axes along and across the "
-        "raceway, largest pressure. The inner ring as a ball passes, how far it moved and its stiffness: "
+        f"At rest, the first {element} below the load: load, contact angle, half axes along and across the "
+        f"raceway, largest pressure. The inner ring as a {element} passes, how far it moved and its "
+        "stiffness: "
         f"{'; '.join(told)}. {data.stated(tree, bearing.LEFT_OUT) or ''}"
     )
-    return table("ball_contacts", "Contacts of the balls", columns, note)
+    return table("ball_contacts", f"Contacts of the {element}s", columns, note)
 
 
 def ball_sliding_table(tree: DataTree) -> ReportTable:
@@ -475,5 +507,7 @@ def bearing_answers(tree: DataTree) -> Answers:
         for band, rms in zip(data.words(tree, bearing.JUDGED_BAND), velocities, strict=True)
     ]
     load, peak = (float(data.values(tree, each).max()) for each in (bearing.BALL_LOAD, bearing.PEAK_PRESSURE))
-    heaviest = HeadlineNumber("heaviest load of a ball", in_newtons(load), f"{peak / 1e9:.2f} GPa at rest")
+    heaviest = HeadlineNumber(
+        f"heaviest load of a {_element(tree)}", in_newtons(load), f"{peak / 1e9:.2f} GPa at rest"
+    )
     return Answers(f"{lead}.", more, (*numbers, heaviest))
