@@ -1,13 +1,15 @@
 """Checks of beams, balls, wheels and springs that relax."""
 
 import math
+import warnings
 from functools import partial
 
 import mpmath as mp
 import numpy as np
 from ledger import Check
 
-from asperity import BallBearing, Beam, Support, SupportedBeam, Wheel, material
+from asperity import BallBearing, Beam, RollerBearing, Support, SupportedBeam, Wheel, material
+from asperity.errors import OutOfRangeWarning
 from asperity.structures.outline import checked_outline, mesh_of
 from asperity.structures.wheel_modes import natural_modes
 
@@ -91,6 +93,20 @@ def loaded_bearings():
     ]
     found = np.interp(tilted.groove_distance * math.sin(angle), axial, ratios)  # as far as without load
     yield row("axial over radial load and tan α, half of it loaded", 1.216, found, body="ball bearing of 30°")
+    straight = RollerBearing(199, 1e-3, 1e-3, 80e-3, crowning="cylindrical")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", OutOfRangeWarning)  # of their ends
+        heaviest = straight.loaded(100.0, cage_angles=[0.0]).inner_load.max()
+        inclined, ratios = straight.with_(contact_angle=angle), np.array([1.25, 1.27])
+        axial = [
+            inclined.loaded(100.0, 100.0 * each * math.tan(angle), cage_angles=[0.0]).displacement[0, 2]
+            for each in ratios
+        ]
+    printed = partial(Check, source="printed, as above; that is for δ^1.1, here δ^(10/9)", tolerance=2e-3)
+    body = "roller bearing without clearance, radial load F"
+    yield printed("largest roller load Z/F", 4.08, heaviest * 199 / 100.0, body=body)
+    found = np.interp(0.0, axial, ratios)
+    yield printed("axial over radial load and tan α, half of it loaded", 1.260, found, body="rollers at 30°")
 
 
 def wheels():

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.integrate import quad
 from scipy.optimize import least_squares
 
 from asperity import RollerBearing
@@ -21,7 +22,14 @@ SJOVALL = {
     0.1: 0.1268, 0.2: 0.1737, 0.3: 0.2055, 0.4: 0.2286, 0.5: 0.2453,
     0.6: 0.2568, 0.7: 0.2636, 0.8: 0.2658, 0.9: 0.2628, 1.0: 0.2523,
 }  # fmt: skip
-"""J_r over the load zone ε for line contacts, as it is printed in textbooks and makers' handbooks."""
+"""J_r over the load zone ε for line contacts, as textbooks and handbooks print it: for exponent 1.1."""
+
+
+def sjovalls_integral(zone, exponent):
+    """(1/2π) ∫ (1 − (1 − cos ψ)/2ε)^n cos ψ dψ over the load zone."""
+    end = math.acos(1.0 - 2.0 * zone)
+    carried = lambda psi: (1.0 - (1.0 - math.cos(psi)) / (2.0 * zone)) ** exponent * math.cos(psi)  # noqa: E731
+    return quad(carried, -end, end)[0] / (2.0 * math.pi)
 
 
 # --- at rest
@@ -30,24 +38,26 @@ SJOVALL = {
 @pytest.mark.filterwarnings(OF_ENDS)
 @pytest.mark.parametrize(("zone", "printed"), SJOVALL.items())
 def test_many_rollers_carry_a_radial_load_as_sjovalls_integral(zone, printed):
-    """ε = (1 − P_d/2x)/2, and F = Z Q J_r of the load Q of the roller that carries most."""
+    """ε = (1 − P_d/2x)/2, and F = Z Q J_r of the load Q of the roller that carries most, with 10/9."""
+    assert sjovalls_integral(zone, 1.1) == pytest.approx(printed, abs=1e-4)
     heaviest = 5.0
     approach = 2.0 * MANY.inner_contact.approach(heaviest)
     moved = approach / (2.0 * zone)  # approach = x − P_d/2 = 2 ε x
     bearing = MANY.with_(clearance=2.0 * moved * (1.0 - 2.0 * zone))
-    found = bearing.loaded(radial=bearing.rollers * heaviest * printed, cage_angles=[0.0])
-    assert found.inner_load.max() == pytest.approx(heaviest, rel=6e-3)
-    assert found.displacement[0, 0] == pytest.approx(moved, rel=6e-3)
+    load = bearing.rollers * heaviest * sjovalls_integral(zone, 10.0 / 9.0)
+    found = bearing.loaded(radial=load, cage_angles=[0.0])
+    assert found.inner_load.max() == pytest.approx(heaviest, rel=1e-3)
+    assert found.displacement[0, 0] == pytest.approx(moved, rel=1e-3)
 
 
 @pytest.mark.filterwarnings(OF_ENDS)
 def test_at_half_a_load_zone_axial_and_radial_load_are_as_printed():
-    """NSK, CAT. E728g, 5.1: F_a = 1.260 F_r tan α, Q = 4.08 F_r/(Z cos α), of line contacts."""
+    """NSK, CAT. E728g, 5.1: F_a = 1.260 F_r tan α, Q = 4.08 F_r/(Z cos α): for 1.1, 0.15 % beside 10/9."""
     angle, radial = 0.2, 300.0
     bearing = MANY.with_(contact_angle=angle)
     found = bearing.loaded(radial, 1.260 * radial * math.tan(angle), cage_angles=[0.0])
     assert found.touching[0] == pytest.approx(100, abs=2)
-    assert found.inner_load.max() == pytest.approx(4.08 * radial / (200 * math.cos(angle)), rel=1e-3)
+    assert found.inner_load.max() == pytest.approx(4.08 * radial / (200 * math.cos(angle)), rel=2e-3)
 
 
 def test_under_an_axial_load_all_rollers_share_it():

@@ -8,7 +8,7 @@ from asperity.schema import VIEW_OF, Attribute, Entry, rolling, spectra
 if TYPE_CHECKING:
     from xarray import DataTree
 
-OF_BEARING = "of a ball bearing"
+OF_BEARING = "of a bearing"
 _bearing, _rolling, _spectra = (
     partial(Entry, group, condition=OF_BEARING) for group in ("bearing", "rolling", "spectra")
 )
@@ -16,7 +16,7 @@ _fact = partial(Attribute, "bearing", condition=OF_BEARING)
 
 # --- how it carries its load
 
-_BALL, _RING = "number of the ball", "ring: inner or outer"
+_BALL, _RING = "number of the ball or roller", "ring: inner or outer"
 _DIRECTION = "direction: along the radial load, across it in the sense of rotation, along the axis"
 _STILL = "nothing vibrates"
 _LOOSE = "balls that do not touch have no contact angle"
