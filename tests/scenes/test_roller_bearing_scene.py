@@ -13,14 +13,15 @@ from asperity.errors import CaseError
 from asperity.laws import Areal
 from asperity.reduction.stiffness import ForceCurve
 from asperity.rolling.bearing import BearingRings, roll_bearing
-from asperity.scenarios.prepared_bearing import prepare_bearing, raceways_of
+from asperity.scenarios.prepared_bearing import expected, prepare_bearing, raceways_of
 from asperity.scenarios.roller_raceways import OnRollerRaceway, on_surface, surface_on
+from asperity.scenes.figures.bearing import along_roller, ball_contacts_table
 from asperity.structures.ring import Ring
 from asperity.surfaces.faults import Fault
 from asperity.surfaces.raceway import AroundTexture
 from refusals import refusals
 
-LOAD, RADIUS = 800.0, 15.75e-3
+LOAD, RADIUS = 800.0, 6e-3
 STRAIGHT = SlicedContact(113e9, 3e-3, Crowning("cylindrical", 8e-3))
 CASE = {
     "kind": "roller-bearing",
@@ -121,6 +122,39 @@ def test_a_spall_of_the_outer_ring_is_heard_at_its_tone(tree):
     assert not [each for each in checks if each["grade"] == "out of range"]
     pressed = tree["rolling/inner_force"].values.sum(axis=(0, 1)).mean()
     assert pressed > 2000.0
+
+
+def test_what_lies_along_the_heaviest_roller_is_told_in_words_of_rollers(tree):
+    found = tree["bearing"].dataset
+    length = 7.8e-3
+    for ring in ("inner", "outer"):
+        line = found.line_load.sel(ring=ring).values
+        assert line.mean() * length == pytest.approx(float(found.ball_load.sel(ring=ring).max()), rel=1e-9)
+        assert float(found.line_pressure.sel(ring=ring).max()) == pytest.approx(
+            float(found.peak_pressure.sel(ring=ring).max()), rel=1e-9
+        )
+    assert np.all(np.abs(found.along_roller) < 0.5 * length)
+    assert found.attrs["element"] == "roller"
+    panel = along_roller.drawn(tree).chart.panels[0]
+    assert panel.marks[0].y.max() == pytest.approx(float(found.line_pressure.max()) / 1e9)
+    assert ball_contacts_table(tree).title == "Contacts of the rollers"
+    rows = dict(expected(prepare_bearing(as_case(CASE)))[0])
+    assert {"heaviest load of a roller", "rollers that touch both rings"} < set(rows)
+    assert "no rib" in rows["not in it"]
+    assert "rollers" in rows["tones"]
+
+
+def test_heights_count_by_the_stiffness_of_their_slices():
+    """A rib at the end of a crowned roller, where nothing touches, moves nothing; one in the middle does."""
+    crowned = SlicedContact(113e9, 3e-3, Crowning("circular", 8e-3, 40e-6))
+    surface = surface_on(crowned, LOAD, RADIUS)
+    on = on_surface(crowned, surface, LOAD)
+    at_end, amid = np.zeros((2, *surface.heights.shape))
+    at_end[:, 0] = amid[:, 20] = 1e-7
+    assert on.averaged(at_end, on.axes)[0] == pytest.approx(0.0, abs=1e-15)
+    assert on.averaged(amid, on.axes)[0] == pytest.approx(1e-7 * on.weights[20])
+    overlap = crowned.approach(LOAD) - crowned.drops
+    assert on.weights[20] / on.weights[15] == pytest.approx((overlap[20] / overlap[15]) ** (1 / 9))
 
 
 def test_the_case_is_laid_on_slices():
