@@ -109,14 +109,14 @@ CHANGING = "speed changes"
 
 def test_a_bearing_writes_and_draws_what_its_schema_says(runs):
     tree = runs(BEARING)
-    others = CHANGING, bearing.OILED
+    others = CHANGING, bearing.OILED, bearing.OF_ROLLERS
     needed = [entry for entry in OWN if not any(each in entry.condition for each in others)]
     assert_as_declared(tree, [*OWN, *ENTRIES], needed)
     facts = {fact.name for fact in FACTS if not any(each in fact.condition for each in others)}
     assert facts == set(tree["bearing"].attrs)
-    oiled = {entry for entry in OWN if entry.condition == bearing.OILED}
+    of_others = {entry for entry in OWN if entry.condition in (bearing.OILED, bearing.OF_ROLLERS)}
     figures = [part for chapter in CHAPTERS if chapter.name in OF_BEARINGS for part in chapter.figures]
-    shown = [part.name for part in figures if not oiled & set(part.needs)]
+    shown = [part.name for part in figures if not of_others & set(part.needs)]
     assert [part.name for part in figures_of(tree)] == [*shown, "force_bands"]
     assert "Diamond: the fault of the outer raceway." in figures_of(tree)[0].caption
 

@@ -171,6 +171,10 @@ test_what_no_roller_bearing_has_is_refused = refusals(
     ({"bearing": {}}, "bearing.name: received none, and no rollers and no roller_diameter"),
     ({"bearing": {"name": "NU205", "crowning": "circular", "crowning_drop": "1 mm"}}, "crowning_drop"),
     ({"bearing": {"name": "6205"}}, "bearing.name: received '6205'"),
+    (
+        {"lubricant": {"oil": "ISO VG 68"}},
+        "lubricant: received an oil; allowed: none: only contacts of balls",
+    ),
     ({"axial": "10 N"}, "axial: received 10 N.*contact_angle is 0"),
     of=lambda changes: as_case(CASE | changes),
     error=CaseError,

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from asperity.contact.hertz import Hertz
 from asperity.scenes.computed_bearing import ComputedBearing
 from asperity.scenes.observer import Observer
 from asperity.schema import Values, bearing
@@ -20,11 +21,17 @@ def creepage_group(computed: ComputedBearing) -> Values:
     }
 
 
+def _has_grooves(computed: ComputedBearing) -> bool:
+    """Whether its contacts are curved across the path, as those of rollers are not."""
+    return isinstance(computed.case.contacts[0][0], Hertz)
+
+
 OBSERVER = Observer(
     "bearing_creepage",
     (bearing.SPIN_CREEPAGE, bearing.RIM_CREEPAGE, bearing.SLIDING_HEAT),
     creepage_group,
     needs=("bearing",),
+    asked_of=_has_grooves,
     sources=(
         "H. L. Heathcote, Proc. Inst. Automobile Eng. 15 (1921) 569 (sliding of a ball in its groove).",
         "A. B. Jones, J. Basic Eng. 81 (1959) 1 (which raceway controls the spin of a ball).",

@@ -475,8 +475,10 @@ def ball_contacts_table(tree: DataTree) -> ReportTable:
     return table("ball_contacts", f"Contacts of the {element}s", columns, note)
 
 
-def ball_sliding_table(tree: DataTree) -> ReportTable:
+def ball_sliding_table(tree: DataTree) -> ReportTable | None:
     """How each ball slides on its raceways at rest."""
+    if not data.present(tree, bearing.SPIN_CREEPAGE):
+        return None
     degrees = _degrees(data.values(tree, bearing.AZIMUTH)[0])
     columns = {"ball at": number_cells(np.round(degrees) + 0.0, "{:.0f}°")}
     shown = (
