@@ -23,10 +23,11 @@ from asperity.scenes import computed_bearing
 from asperity.scenes.bearing import heard_group
 from asperity.scenes.bearing_validity import out_of_place
 from asperity.scenes.computed_bearing import bearing_rings, cage_slip, compute_bearing, thinned
-from asperity.scenes.figures.bearing import load_zone
+from asperity.scenes.figures.bearing import ball_turn, load_zone
 from asperity.scenes.report import page_of
 from asperity.schema import bearing as schema
 from asperity.schema import spectra
+from asperity.studies.member import kept
 from command_line import program
 from small_cases import BEARING
 
@@ -328,6 +329,11 @@ def test_forces_of_a_bearing_stand_by_contact_each_a_ball_on_a_ring(runs, tmp_pa
         carried = np.sum(main[on_it] * [np.cos(azimuth), np.sin(azimuth)], axis=1)
         assert carried.mean(axis=1) == pytest.approx([100.0, 0.0], abs=1.0)
         means[ring] = main[on_it].mean()
+        peak = kept(tree)["peak_force"].sel(ring=ring).values
+        assert peak == main[on_it].max()
+        turn = next(each for each in ball_turn.collect(tree).lines if each.name == f"{ring} force")
+        of_first = main[on_it & (found["contact_ball"].values == 1)][0]
+        np.testing.assert_array_equal(turn.values, of_first[-len(turn.values) :])
     pressing = B6205.centrifugal_force(TURNS)
     assert means["outer"] - means["inner"] == pytest.approx(pressing, rel=0.02)
     path = asperity.save(tree, tmp_path / "run.nc")
@@ -364,7 +370,10 @@ def test_balls_slide_in_their_grooves_without_spin_under_a_radial_load(runs):
         expected = 0.16114 * load[row] * at_rim * speed
         np.testing.assert_allclose(heat[row][between], expected[between], rtol=3e-3)
         np.testing.assert_allclose(rim[row][between], (1.0 - 0.3473**2) * at_rim[between], rtol=1e-4)
-    assert "Sliding of the balls" in page_of(tree)
+    page = page_of(tree)
+    assert "Sliding of the balls" in page
+    for of_paths in ("How far the levels may be off", "contacts vary by, rms", "contact 1 of"):
+        assert of_paths not in page
 
 
 def test_no_force_is_written_below_zero_where_a_ball_leaves_the_ring(runs):
