@@ -69,13 +69,20 @@ class LateralWaves:
 
     def receptance(self, x: float, x0: float) -> Complex:
         """Motion at `x` per force at `x0`, (m, m, f); positions from any support, m."""
-        first = min(x, x0)
-        last = max(x, x0)
-        start = np.floor(first / self.spacing)
-        end = np.floor(last / self.spacing)
-        to = self.outgoing(last - end * self.spacing) * self.coefficients * self.multipliers ** (end - start)
-        found = np.einsum("ajf,bjf->abf", to, self.incoming(first - start * self.spacing))
+        found = self.receptances([max(x, x0)], min(x, x0))[0]
         return np.asarray(found if x >= x0 else found.swapaxes(0, 1))
+
+    def receptances(self, places: ArrayLike, x0: float) -> Complex:
+        """Motion at places (x,), none before `x0`, per force there, (x, m, m, f); from any support, m."""
+        start = np.floor(x0 / self.spacing)
+        incoming = self.incoming(x0 - start * self.spacing)
+        found = []
+        for last in np.asarray(places, dtype=float).tolist():
+            end = np.floor(last / self.spacing)
+            outgoing = self.outgoing(last - end * self.spacing)
+            to = outgoing * self.coefficients * self.multipliers ** (end - start)
+            found.append(np.einsum("ajf,bjf->abf", to, incoming))
+        return np.stack(found)
 
 
 def lateral_waves(free: FreeWaves, support: Complex, spacing: float) -> LateralWaves:
@@ -309,7 +316,7 @@ class LateralTrack(LateralParameters):
         spacing = self.track.sleeper_spacing
         distances = spacing * np.array(EN_15461_BAYS)
         force = 0.5 * spacing
-        motion = np.stack([waves.receptance(force + each, force) for each in distances])
+        motion = waves.receptances(force + distances, force)
         responses = np.einsum("a,xabf,b->xf", sideways, motion, sideways)
         return decay_rate_of_responses(distances, np.abs(responses))
 
