@@ -177,6 +177,9 @@ def test_asperities_carry_what_a_wave_does_that_is_pressed_flat():
     assert shares == sorted(shares, reverse=True)
     assert shares[-1] == 0.0
     assert films.asperity_share(heights, (length / 32,) * 2, modulus, 1e-12, 0.5 * flat) == 1.0
+    ridges = np.maximum(heights, 0.9 * amplitude)
+    assert films.asperity_share(ridges, (length / 32,) * 2, modulus, 0.03 * amplitude, flat) > 0.0
+    assert films.asperity_share(-ridges, (length / 32,) * 2, modulus, 0.03 * amplitude, flat) == 0.0
 
 
 # --- an oil

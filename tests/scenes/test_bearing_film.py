@@ -89,10 +89,15 @@ def test_rings_under_a_load_are_nearer_by_the_films_of_both_contacts(films):
     assert moved == pytest.approx(apart / math.sin(prepared.case.static.contact_angle), rel=0.02)
 
 
-def wavy(rows, lines, amplitude):
+def wavy(rows, lines, amplitude, period=16.0):
     """Waves along a raceway, 16 cells each, m."""
-    heights = amplitude * np.cos(2.0 * np.pi * np.arange(rows) / 16.0)
+    heights = amplitude * np.cos(2.0 * np.pi * np.arange(rows) / period)
     return Raceway(np.repeat(heights[:, None], lines, axis=1), (2e-6, 4e-6))
+
+
+def test_of_a_wave_four_contacts_long_a_quarter_from_its_mean_is_left():
+    left = math.sqrt(0.5 - 4.0 / math.pi**2)
+    assert rms_within(wavy(1600, 8, WAVE, 64.0), (16e-6, 8e-6)) == pytest.approx(WAVE * left, rel=0.01)
 
 
 def test_roughness_of_both_surfaces_counts_within_the_contact():

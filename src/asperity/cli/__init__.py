@@ -190,9 +190,8 @@ def bearing(
     --------
     # which bearings have a name, and where their balls are printed
     asperity bearing --list
-    # loads, contact ellipses, pressures, stiffness, tones
+    # loads, contact ellipses, pressures, stiffness, tones; films of oil
     asperity bearing 6205 --radial '100 N' --speed '1797 1/min'
-    # how thick its films of oil are
     asperity bearing 6205 --radial '100 N' --speed '1797 1/min' --oil 'ISO VG 68' --temperature '60 degC'
     # loads of the balls as a picture; a data sheet
     asperity bearing own.toml --axial '50 N' -o load.png
