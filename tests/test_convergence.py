@@ -19,9 +19,10 @@ from asperity.reporting.page import sections_of
 from asperity.reporting.tables import changes_table, settings_table
 from asperity.running import prepare_case
 from asperity.scenarios.refining import Way, on_the_surface_of, restricted, settings_for
+from asperity.scenes import schema as scene
 from asperity.scenes.bearing_refining import settings_of_bearing
 from asperity.scenes.report import CHAPTERS
-from asperity.schema import Entry, convergence
+from asperity.schema import Entry, contact, convergence, spectra
 from asperity.surfaces.synthesis import long_self_affine
 from command_line import call
 from small_cases import COARSE, changed
@@ -337,3 +338,35 @@ class TestBearing:
             softest = settings_of_bearing(prepare_case(case.with_(housing={"lobes": lobes})), None)
             setting = next(each for each in softest if each.name == "lobes")
             assert (setting.ways[0].words if setting.ways else setting.limit) == words
+
+
+@pytest.mark.parametrize("coarser", [False, True])
+def test_of_a_way_that_is_coarser_the_case_itself_is_the_finer_of_the_two(coarser, monkeypatch):
+    """Levels of either are those of its own textures: the coarser case is laid on those of the finer one."""
+    prepared = case_of(LINE)
+    asked = []
+
+    def levels(case, textures_of, make, progress):
+        asked.append(bool(textures_of))
+        return "twin" if textures_of else "changed"
+
+    monkeypatch.setattr(converging, "_levels", levels)
+    setting = replace(settings(prepared)["grid"], laid_anew=lambda small, large: small)
+    finer = converging._both(prepared, "case", setting, Way("", coarser=coarser), lambda *_: None)
+    assert finer == (("case", "twin") if coarser else ("changed", "twin"))
+    assert asked == ([True] if coarser else [True, False])
+
+
+def test_of_a_motion_at_several_places_the_powers_are_averaged_over_these():
+    held = xarray.Dataset(
+        {
+            "band": ("band", [100.0, 200.0]),
+            "force_level": (("law", "band"), [[1.0, 2.0]]),
+            "velocity_level": (("law", "place", "band"), [[[0.0, 50.0], [10.0, 50.0]]]),
+        }
+    )
+    name = next(entry.name for entry in scene.KEPT if entry.dims[0] == "law" and len(entry.dims) == 3)
+    held = held.rename(velocity_level=name, force_level=spectra.FORCE_LEVEL.name)
+    tree = xarray.DataTree.from_dict({spectra.FORCE_LEVEL.group: held, contact.WORKING_STIFFNESS.group: None})
+    found = converging.levels_of(tree)
+    np.testing.assert_allclose(found.motion.values, [[10.0 * np.log10(5.5), 50.0]])

@@ -10,6 +10,8 @@ from report_tree import LAWS, PARTS, laws_in, report_tree, uncertain, with_force
 from asperity.laws import spec_of
 from asperity.reporting.chart import Boxes, Field, Line, Note, Rules
 from asperity.reporting.data import law_entries, missing
+from asperity.reporting.paper import as_seen
+from asperity.reporting.texture_figures import distribution, height_histogram
 from asperity.scenes.figures.force import TO_REFERENCE
 from asperity.schema import contact
 
@@ -182,3 +184,28 @@ def test_differences_are_drawn_over_the_filtered_linear_contact_first(tree):
     solved = columns["areal minus reference [dB]"]
     np.testing.assert_array_equal(solved, spectra[TO_REFERENCE.name].sel(law="areal"))
     assert "minus that of linear-filtered and that of linear" in part.drawn(tree).caption
+
+
+def test_of_a_large_field_means_are_drawn_and_missing_points_stay_missing():
+    values = np.arange(2_100.0 * 3).reshape(2_100, 3)
+    values[4:6] = np.nan
+    values[1, 0] = np.nan
+    seen, (along, across) = as_seen(values)
+    assert seen.shape == (1_050, 3)
+    assert (along, across) == (1.0, 1.0)
+    assert np.isnan(seen[2]).all()
+    assert seen[0].tolist() == [0.0, 2.5, 3.5]
+    assert seen[-1].tolist() == values[-2:].mean(axis=0).tolist()
+    odd, shares = as_seen(values[:2_049])
+    assert odd.shape == (1_024, 3)
+    assert shares == (2_048 / 2_049, 1.0)
+    assert as_seen(values[:2_047])[0] is not None
+    assert as_seen(values[:2_047])[0].shape == (2_047, 3)
+
+
+def test_a_histogram_of_few_heights_is_in_its_panel():
+    """Of digits few bins hold all, each higher than the normal distribution: the panel was empty."""
+    heights = 1e-9 * np.random.default_rng(0).integers(0, 10, 20_000)
+    panel = height_histogram({"heights": distribution(heights)}, (1e-9, "nm"), beside=False)
+    steps = panel.marks[0]
+    assert panel.y.high >= np.nanmax(steps.y)

@@ -1,5 +1,7 @@
 """Roughness parameters, spectra and correlation of maps, lines and strips, against closed forms."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -265,3 +267,24 @@ def test_without_seven_points_in_a_row_there_is_no_slope_but_all_else(heights):
     found = {item.symbol: item.value for item in profile_statistics(Profile(heights, 1.0))}
     assert [symbol for symbol, value in found.items() if np.isnan(value)] == ["Rdq"]
     assert found["Rq"] == pytest.approx(np.nanstd(heights))
+
+
+@pytest.mark.parametrize(("evaluated", "most"), [
+    (lambda surface: spectra.psd_2d(surface)[2], 3.4),
+    (spectra.texture_direction, 3.4),
+    (spectra.autocorrelation, 4.4),
+])  # fmt: skip
+def test_a_large_map_is_not_held_many_times_in_its_spectra(evaluated, most, monkeypatch):
+    """Its complex spectrum takes twice its heights; all that is made of it is made in pieces, or in place."""
+    monkeypatch.setattr("asperity.surfaces.spectra.PIECE", 2**12)
+    surface = HeightMap(1e-6 * np.random.default_rng(4).normal(size=(256, 256)), (1e-6, 1e-6))
+    evaluated(surface)  # imports
+    tracemalloc.start()
+    try:
+        in_pieces = evaluated(surface)
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert peak < most * surface.heights.nbytes
+    monkeypatch.undo()
+    assert_allclose(np.asarray(in_pieces), np.asarray(evaluated(surface)), rtol=1e-9)

@@ -102,9 +102,10 @@ def height_histogram(
     z = np.linspace(edges[0], edges[-1], 200)
     normal = np.exp(-((z - mean) ** 2) / (2 * spread**2)) / (spread * np.sqrt(2 * np.pi))
     top = float(normal.max() * size)
+    highest = max(float(np.nanmax(each.y)) for each in steps)  # of rounded heights few bins hold all
     return Panel(
         Axis(f"height / {symbol} (out of the material →)"),
-        Axis(f"probability density / (1/{symbol})", 1e-4 * top, 4.0 * top, log=True),
+        Axis(f"probability density / (1/{symbol})", 1e-4 * top, max(4.0 * top, 1.2 * highest), log=True),
         (*steps, Line(z / size, normal * size, "normal", *NORMAL, width=0.9)),
         **place,
     )

@@ -1,5 +1,7 @@
 """Spectra and correlation of maps and lines, and whether they are the same everywhere."""
 
+from collections.abc import Iterator
+
 import numpy as np
 import scipy
 from scipy import fft
@@ -9,6 +11,9 @@ from asperity.errors import ShortRecordWarning
 from asperity.spectra import hann_window, psd
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.threads import thread_count
+
+PIECE = 2**20
+"""Points of a map, or of its spectrum, that are looked at in one go."""
 
 
 def psd_1d(surface: HeightMap | Profile, axis: int = 0) -> tuple[Array, Array]:
@@ -21,6 +26,12 @@ def psd_1d(surface: HeightMap | Profile, axis: int = 0) -> tuple[Array, Array]:
     lines = np.moveaxis(surface.heights, axis, -1)
     wavenumber, density = psd(lines, float(np.atleast_1d(surface.spacing)[axis]))
     return wavenumber, density.reshape(-1, wavenumber.size).mean(axis=0)
+
+
+def _pieces(shape: tuple[int, int]) -> Iterator[slice]:
+    """Rows of an array that are looked at together: a large map is not held many times."""
+    rows = max(1, PIECE // shape[1])
+    return (slice(first, first + rows) for first in range(0, shape[0], rows))
 
 
 def _complete(surface: HeightMap | Profile) -> Array:
@@ -43,9 +54,18 @@ def psd_2d(surface: HeightMap) -> tuple[Array, Array, Array]:
     """
     z, (dx, dy) = _complete(surface), surface.spacing
     weights = np.outer(*map(hann_window, z.shape))
-    energy = float(np.sum(weights**2))
-    density = fft.fftshift(np.abs(fft.fft2(z * weights)) ** 2) * (dx * dy / (4.0 * np.pi**2 * energy))
-    qx, qy = (2.0 * np.pi * fft.fftshift(fft.fftfreq(n, d)) for n, d in zip(z.shape, (dx, dy), strict=True))
+    z *= weights  # in place, here and below: maps may be large
+    energy = float(np.sum(np.square(weights, out=weights)))
+    del weights
+    lines = fft.fft2(z)
+    del z
+    density = np.abs(lines)
+    del lines
+    np.square(density, out=density)
+    density = fft.fftshift(density)
+    density *= dx * dy / (4.0 * np.pi**2 * energy)
+    steps = zip(density.shape, (dx, dy), strict=True)
+    qx, qy = (2.0 * np.pi * fft.fftshift(fft.fftfreq(n, d)) for n, d in steps)
     return qx, qy, density
 
 
@@ -79,11 +99,14 @@ def texture_direction(surface: HeightMap) -> float:
     a power that is chance.
     """
     qx, qy, density = psd_2d(surface)
-    q = np.hypot(qx[:, None], qy[None, :])
-    angle = np.arctan2(qy[None, :], qx[:, None]) % np.pi
-    inside = (q >= 3.0 * max(qx[1] - qx[0], qy[1] - qy[0])) & (q <= min(-qx[0], -qy[0]))
-    degrees = np.rint(np.degrees(angle[inside])).astype(np.intp) % 180
-    power = smooth = np.bincount(degrees, (q**2 * density)[inside], minlength=180)
+    power = np.zeros(180)
+    for rows in _pieces(density.shape):
+        q = np.hypot(qx[rows, None], qy[None, :])
+        angle = np.arctan2(qy[None, :], qx[rows, None]) % np.pi
+        inside = (q >= 3.0 * max(qx[1] - qx[0], qy[1] - qy[0])) & (q <= min(-qx[0], -qy[0]))
+        degrees = np.rint(np.degrees(angle[inside])).astype(np.intp) % 180
+        power += np.bincount(degrees, (q**2 * density[rows])[inside], minlength=180)
+    smooth = power
     for _ in range(2):
         smooth = scipy.ndimage.uniform_filter1d(smooth, 31, mode="wrap")
     off = (np.arange(180) - smooth.argmax() + 90) % 180 - 90
@@ -123,11 +146,15 @@ def lag_products(heights: Array, reach: int) -> Array:
     side = columns // 2
     length = fft.next_fast_len(rows + reach, real=True)  # what wraps is beyond the lags
     width = fft.next_fast_len(columns + side)
-    spectrum = fft.rfft(heights, length, axis=0, workers=workers)
-    spectrum = fft.fft(spectrum, width, axis=1, overwrite_x=True, workers=workers)
-    power = spectrum.real**2 + spectrum.imag**2
-    across = np.conj(fft.rfft(power, axis=1, workers=workers)[:, : side + 1]) / width
+    along = fft.rfft(heights, length, axis=0, workers=workers)
+    across = np.empty((len(along), side + 1), dtype=np.complex128)
+    for piece in _pieces((len(along), width)):
+        spectrum = fft.fft(along[piece], width, axis=1, workers=workers)
+        power = spectrum.real**2 + spectrum.imag**2
+        across[piece] = np.conj(fft.rfft(power, axis=1, workers=workers)[:, : side + 1]) / width
+    del along
     half = fft.irfft(across, length, axis=0, overwrite_x=True, workers=workers)
+    del across
     half = np.concatenate([half[length - reach :], half[: reach + 1]])
     return np.hstack([half[::-1, :0:-1], half])  # the same at a lag and its opposite
 
