@@ -370,3 +370,21 @@ def test_of_a_motion_at_several_places_the_powers_are_averaged_over_these():
     tree = xarray.DataTree.from_dict({spectra.FORCE_LEVEL.group: held, contact.WORKING_STIFFNESS.group: None})
     found = converging.levels_of(tree)
     np.testing.assert_allclose(found.motion.values, [[10.0 * np.log10(5.5), 50.0]])
+
+
+def test_the_largest_change_is_that_of_the_bands_that_are_compared_whatever_its_sign():
+    change = np.array([0.1, -3.0, 2.0, np.nan])
+    assert converging._largest(change, np.array([True, True, True, True])) == (3.0, 1)
+    assert converging._largest(change, np.array([True, False, True, True])) == (2.0, 2)
+    assert converging._largest(change, np.array([False, False, False, True]))[1] is None
+
+
+@pytest.mark.parametrize(("sizes", "told"), [
+    ((1.2, 0.6, 0.4), "Above 0.5 dB is also window (0.6 dB)."),
+    ((1.2, 0.6, 0.55), "Above 0.5 dB is also window (0.6 dB), modes (0.6 dB)."),
+    ((1.2, 0.41, 0.2), "The others change them by up to 0.41 dB."),
+    ((0.49, 0.41, 0.2), "All are fine enough for 0.5 dB."),
+])  # fmt: skip
+def test_what_is_told_of_the_other_settings_begins_at_half_a_decibel(sizes, told):
+    names = ("grid", "window", "modes")
+    assert converging._told_of_others("grid", names[1:], dict(zip(names, sizes, strict=True))) == told

@@ -265,3 +265,20 @@ def test_a_long_line_is_held_once_beside_itself(evaluated, most, monkeypatch):
     finally:
         tracemalloc.stop()
     assert peak < most * heights.nbytes
+
+
+def test_a_line_in_pieces_is_the_line_as_a_whole(monkeypatch):
+    """Spikes, whose feet lie in the piece beside, the circle, which reaches over it, and what is sorted."""
+    random = np.random.default_rng(5)
+    heights = 20 * UM * random.standard_normal(3_000)
+    heights[random.integers(0, 3_000, 60)] += 300 * UM
+    line = Profile(heights, MM)
+    whole = remove_spikes(line), roll_over(line), profile_statistics(line)
+    monkeypatch.setattr(measured_lines, "TOGETHER", 7)
+    monkeypatch.setattr("asperity.surfaces.statistics.PIECE", 7)
+    pieces = remove_spikes(line), roll_over(line), profile_statistics(line)
+    assert pieces[0][1:] == whole[0][1:]
+    assert pieces[0][1] > 50
+    assert_array_equal(pieces[0][0].heights, whole[0][0].heights)
+    assert_array_equal(pieces[1].heights, whole[1].heights)
+    assert_allclose([each.value for each in pieces[2]], [each.value for each in whole[2]], rtol=1e-9)
