@@ -57,6 +57,20 @@ def test_members_are_named_by_all_that_a_result_depends_on():
     assert found.members()[0].key != first.key
 
 
+def test_members_share_the_finest_grid_and_the_widest_window_that_any_was_given():
+    """The contact of a heavy ball is wider: its window holds that of a light one, whose cells are in its."""
+    rough = asperity.BallOnBeam(surface={"rms": "0.1 um"})
+    loads = ["5 N", "100 N"]
+    alone = [rough.with_(**{"ball.load": load}).contact for load in loads]
+    assert alone[0].spacing < alone[1].spacing
+    assert alone[0].window < alone[1].window
+    shared = [member.case.contact for member in study_of(rough, {"ball.load": loads}).members()]
+    assert {each.spacing for each in shared} == {alone[0].spacing}
+    assert {each.window for each in shared} == {alone[1].window}
+    bearing = asperity.BearingUnderLoad(axial=100, bearing={"name": "6205"})
+    assert len(study_of(bearing, {"axial": ["50 N", "100 N"]}).members()) == 2
+
+
 test_what_is_wrong_is_explained = refusals(
     ("", "study.toml: received an empty file"),
     ("# nothing", "case: received nothing; allowed: the path of a case"),
