@@ -16,6 +16,7 @@ from asperity.rolling.bearing import BearingRings, roll_bearing
 from asperity.scenarios.prepared_bearing import expected, prepare_bearing, raceways_of
 from asperity.scenarios.roller_raceways import OnRollerRaceway, on_surface, surface_on
 from asperity.scenes.figures.bearing import along_roller, ball_contacts_table
+from asperity.serving.contact_preview import PressedSample
 from asperity.structures.ring import Ring
 from asperity.surfaces.faults import Fault
 from asperity.surfaces.raceway import AroundTexture
@@ -164,6 +165,14 @@ def test_the_case_is_laid_on_slices():
     assert inner.surface.heights.shape[1] == prepared.case.bearing.bearing.slices
     assert inner.load == prepared.case.static.inner_load.max() < outer.load
     assert as_case(CASE).title == "Roller bearing NU205 at 1800 1/min"
+
+
+def test_on_the_page_the_most_loaded_roller_is_pressed_on_its_raceway():
+    rough = PressedSample(as_case(CASE | {"outer_raceway": {"roughness": "20 nm"}}))
+    found = rough.at(None)
+    assert found["force"] == pytest.approx(rough.load, rel=1e-4)
+    assert found["smooth_force"] == pytest.approx(rough.load, rel=0.2)
+    assert rough.source.startswith("the most loaded roller on the outer raceway")
 
 
 test_what_no_roller_bearing_has_is_refused = refusals(

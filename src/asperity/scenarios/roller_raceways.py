@@ -71,9 +71,24 @@ def on_surface(contact: AnyContact, surface: Raceway, load: float, **others: Any
     return made
 
 
+def on_cells(on: OnRaceway, heights: Array) -> Array:
+    """Heights (rows, lines) of a surface, m, on the cells of its contacts: those of rollers are slices."""
+    return on.in_slices(heights) if isinstance(on, OnRollerRaceway) else heights
+
+
 def felt_by(contact: AnyContact, surface: Raceway, load: float) -> Array:
     """Heights (rows,), m, closed, that the contact of a ball or roller under a load, N, feels around it."""
     return on_surface(contact, surface, positive("load of a ball or roller (N)", load)).felt
+
+
+class RollerGap(Geometry):
+    """The gap of a roller and its raceway, whose contact is as wide as the window across at any load."""
+
+    @property
+    def filling_force(self) -> float:
+        """Force whose contact is as long as the window along the path, N: as the square of its width."""
+        window = 0.5 * self.body.shape[0] * self.spacing[0]
+        return float(self.load * (window / self.semi_axes[0]) ** 2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +112,7 @@ class OnRollerRaceway(OnRaceway):
         return self.contact.semi_axes(self.contact.approach(self.load))
 
     @cached_property
-    def shape(self) -> Geometry:
+    def shape(self) -> RollerGap:
         """The gap of the smooth bodies along the path and by slices."""
         step = self.surface.spacing[0]
         half = math.ceil(raceway_laws.HALF_WINDOW * self.axes[0] / step)
@@ -106,7 +121,7 @@ class OnRollerRaceway(OnRaceway):
         width = self.contact.length / self.contact.slices
         contact: Any = self.contact
         largest = HIGHEST_FORCE * self.load
-        return Geometry(gap, (step, width), self.contact.modulus, contact, self.load, largest)
+        return RollerGap(gap, (step, width), self.contact.modulus, contact, self.load, largest)
 
     @cached_property
     def approaches(self) -> Array:
@@ -125,7 +140,7 @@ class OnRollerRaceway(OnRaceway):
         """d₀, m, with which all states are positive in contact."""
         return -min(self.curve.first_touch, -reducing.LEAST_DATUM)
 
-    def _in_slices(self, heights: Array) -> Array:
+    def in_slices(self, heights: Array) -> Array:
         """Mean heights (rows, slices) of the lines of each slice."""
         return np.asarray(heights.reshape(len(heights), self.contact.slices, -1).mean(axis=-1))
 
@@ -147,7 +162,7 @@ class OnRollerRaceway(OnRaceway):
 
     def averaged(self, heights: Array, axes: ArrayLike) -> Array:
         """Heights (rows, lines), m, averaged under half widths (k, 2), m, with `over_faults`: (k, rows)."""
-        along = self._in_slices(heights) @ self.weights
+        along = self.in_slices(heights) @ self.weights
         widths = np.atleast_2d(axes)[:, 0]
         return self.over_faults + np.stack([self._under_widths(along, float(each)) for each in widths])
 
@@ -163,8 +178,8 @@ class OnRollerRaceway(OnRaceway):
             np.repeat(pressed_in, self.surface.faults.shape[1] // self.contact.slices)
         )
         half_width = self.axes[0]
-        lost = self._under_widths(self._in_slices(covered), half_width)[near]
-        met = self._under_widths(self._in_slices(heights), half_width)[near]
+        lost = self._under_widths(self.in_slices(covered), half_width)[near]
+        met = self._under_widths(self.in_slices(heights), half_width)[near]
         constant = self.contact.stiffness_constant / self.contact.slices * np.clip(1.0 - lost, 0.0, 1.0)
         smooth = self.contact.approach(self.load)
         deepest = 2.0 * smooth + self._sinks()  # on the edges of what nothing carries in

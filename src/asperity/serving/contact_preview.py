@@ -18,6 +18,7 @@ from asperity.reduction.texture import punch_weights
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.prepared_bearing import prepare_bearing, raceways_of
 from asperity.scenarios.preparing import prepare
+from asperity.scenarios.roller_raceways import on_cells
 from asperity.scenarios.scene import PreparedCase
 from asperity.scenarios.textures import strip_rows
 from asperity.written_numbers import rounded
@@ -164,10 +165,11 @@ def raceway_surface(case: BearingUnderLoad) -> PressedSurface:
     damaged = np.flatnonzero(on.surface.damaged.any(axis=1))
     middle = int(damaged[len(damaged) // 2]) if damaged.size else 0
     rows = (np.arange(len(on.shape.body)) - len(on.shape.body) // 2 + middle) % on.rows
-    heights = (on.surface.heights + on.surface.faults)[rows]
+    heights = on_cells(on, on.surface.heights + on.surface.faults)[rows]
     passing = 2.0 * np.pi * case.bearing.bearing.raceway_radii[1] * abs(turning.cage - turning.outer)
     where = "over the middle of what is damaged" if damaged.size else "where it begins"
-    source = f"the most loaded ball on the outer raceway, {where}; long waves lift it as a whole"
+    element = case.bearing.bearing.ELEMENT
+    source = f"the most loaded {element} on the outer raceway, {where}; long waves lift it as a whole"
     return PressedSurface(on.shape, heights, passing, on.hardness, source)
 
 
