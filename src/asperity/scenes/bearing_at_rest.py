@@ -54,7 +54,7 @@ def tones_group(turning: Kinematics) -> Values:
     }
 
 
-def at_rest(computed: ComputedBearing) -> Values:
+def rest_group(computed: ComputedBearing) -> Values:
     """Lay out the same of a run."""
     case = computed.case
     return static_group(case.static, case.kinematics, omitted_from(case))
@@ -86,6 +86,6 @@ OBSERVER = Observer(
         bearing.MODULATION,
         bearing.TURNING,
     ),
-    at_rest,
+    rest_group,
     needs=("bearing",),
 )
