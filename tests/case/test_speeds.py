@@ -98,7 +98,7 @@ test_courses_that_cannot_be_are_refused = refusals(
         "600..90000 1/min in 5 s",
         "received up to 90000 1/min, which",
     ),
-    (refused_track, "20..30 m/s in 1 s", "a course, 20 to 30; allowed: one constant speed over a track"),
+    (refused_track, "20..30 m/s in 1 s", "a course, 20 to 30 m/s; allowed: one constant speed over a track"),
     (refused_creep, "1..3 m/s in 1 s", "one constant speed of what creeps"),
     of=lambda ask, speed: ask(speed),
     error=CaseError,

@@ -42,7 +42,7 @@ test_wrong_aims_are_refused_with_all_that_is_wrong = refusals(
     ({"case": SPECTRUM, "lateral": [0.5, 2.0]}, "a line, which has no lay"),
     (
         {"case": CASE | {"speed": "1..2 m/s in 0.1 s"}},
-        "speed: received a course, 1 to 2; allowed: one constant",
+        "speed: received a course, 1 to 2 m/s; allowed: one constant",
     ),
     ({"case": ON_PLANE, "quantity": "rms acceleration"}, '"rms acceleration" of bodies'),
     of=lambda aim: asperity.optimise(**{"case": CASE, "rms_at_least": "1 um"} | aim),

@@ -126,7 +126,7 @@ def span_of(speed: float, factor: float = 1.0) -> str:
 
 
 def refuse_course(speed: float, where: str, remedy: str = "Give a constant speed.") -> None:
-    """Refuse a speed that changes where a constant one is asked for."""
+    """Refuse a speed, m/s, that changes where a constant one is asked for."""
     if isinstance(speed, SpeedCourse):
-        received = f"a course, {rounded(speed.slowest, 5)} to {rounded(float(speed), 5)}"
+        received = f"a course, {rounded(speed.slowest, 5)} to {rounded(float(speed), 5)} m/s"
         raise InputError("speed", received, f"one constant speed {where}", remedy)
