@@ -144,7 +144,7 @@ def solve_law(evaluate, law, step, free, load, guess, damping, in_flight, relati
 
 @compiled(**INNER)
 def solve_prepared(laws, k, step, free, load, guess):  # type: ignore[no-untyped-def]
-    """As `solve_law`, by the law of contact k, of those from `asperity.rolling.stepper.stacked`."""
+    """As `solve_law`, by the law of contact k, of those that `asperity.rolling.course.Course` lays out."""
     stack, counts = laws
     states, knots = counts[0, k], counts[1, k]
     law = Prepared(
@@ -364,7 +364,8 @@ def observe_contact(system, motion, record, step, shapes, rates, k):  # type: ig
     force = motion.force[0, k]
     rise = 0.0
     rate = -(body_rate + over_rate + climb)
-    on_rail = system.channels.first[k + 1] > system.channels.first[k]
+    first = system.channels.first
+    on_rail = system.channels.source.shape[0] > 0 and first[k + 1] > first[k]
     approach, rolling = record.relative_displacement[k], record.rolling_displacement[k]
     record.contact_force[k, step], record.over_displacement[k, step] = force, over
     approach[step] = -(over + body)
