@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 ROLLER_BEARINGS: dict[str, dict[str, float]] = {
     "NU205": {"rollers": 13, "roller_diameter": 7.5e-3, "roller_length": 7.8e-3, "pitch_diameter": 39e-3},
 }
-"""By the keywords of `RollerBearing`, m. Of NU 205 the raceways, of 31.5 and 46.5 mm, are those of makers'
-catalogues; how many rollers it has, and how long they carry, is not printed, and is chosen so that ISO 76
-makes the static load rating of these catalogues of it, 27 kN."""
+"""By the keywords of `RollerBearing`, m. Of NU 205 the raceways, of 31.5 and 46.5 mm, and the static load
+rating, 27 kN, are usual ones that were not checked against a copy of a catalogue; how many rollers it has,
+and how long they carry, is not printed, and is chosen so that ISO 76 makes this rating of them."""
 CLEARANCE = 20e-6
 """Diametral clearance of the named bearings, m, chosen here."""
 STEEL = MATERIALS["steel"]
