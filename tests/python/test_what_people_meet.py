@@ -30,7 +30,7 @@ def test_help_on_a_kind_tells_every_key_with_unit_default_meaning_and_limits(kin
 def test_help_names_the_unit_that_a_number_is_in():
     told = inspect.getdoc(asperity.WheelOnRail)
     assert (
-        "speed : m/s, default '56 m/s'\n    Rolling speed (a speed greater than 0; 0.1 mm/s to 1 km/s:"
+        "speed : m/s, default '56 m/s'\n    Rolling speed (a speed greater than 0, or, off tracks, a course"
         in told
     )
     assert "    pad_stiffness : N/m, optional\n        Stiffness of a rail pad" in told
@@ -104,6 +104,6 @@ def test_a_case_file_is_read_as_an_object(tmp_path):
 def test_kinds_are_called_by_what_rolls_without_a_suffix():
     """What they were called still leads to them."""
     names = {case_class(kind).__name__ for kind in PRESETS}
-    assert names == {"BallOnBeam", "WheelOnRail", "Bodies", "BearingUnderLoad"}
+    assert names == {"BallOnBeam", "WheelOnRail", "Bodies", "BearingUnderLoad", "RollerBearingUnderLoad"}
     assert asperity.BallBearingCase is asperity.BearingUnderLoad
     assert "BallBearingCase" not in dir(asperity)

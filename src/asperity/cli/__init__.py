@@ -8,7 +8,6 @@ from typing import Any
 import click
 
 from asperity import __version__
-from asperity.case import kinds
 from asperity.cli import commands
 from asperity.cli.commands import PATH, Program, output
 from asperity.errors import InputError
@@ -16,11 +15,6 @@ from asperity.terminal import say
 
 Document = dict[str, Any]
 """What a command says to programs."""
-
-
-def templates() -> tuple[str, ...]:
-    """List what 'asperity new' can write."""
-    return (*kinds(), *commands.TEMPLATES)
 
 
 @click.group(cls=Program, document=False, context_settings={"help_option_names": ["-h", "--help"]})
@@ -80,7 +74,9 @@ def demo(directory: Path, again: bool, overwrite: bool) -> None:
 
 
 @_begin("Write a commented case, or a study, to begin with.", document=False)
-@click.argument("kind", metavar="|".join(templates()), shell_complete=commands.completed(templates))
+@click.argument(
+    "kind", metavar="|".join(commands.templates()), shell_complete=commands.completed(commands.templates)
+)
 @commands.laws
 def new(kind: str, laws: tuple[str, ...]) -> None:
     """Write a commented case, a study of one or its optimisation, to standard output.
@@ -106,8 +102,8 @@ def new(kind: str, laws: tuple[str, ...]) -> None:
     from asperity.optimising.templates import AIM_TEMPLATES
     from asperity.studies.definition import TEMPLATE
 
-    if kind not in templates():
-        raise not_a_kind(kind, templates())
+    if kind not in commands.templates():
+        raise not_a_kind(kind, commands.templates())
     others = {"study": lambda: TEMPLATE, **AIM_TEMPLATES, **READY_LISTS}
     say(others[kind]() if kind in others else template(kind, laws), lines=True)
 
@@ -190,11 +186,13 @@ def bearing(
     --------
     # which bearings have a name, and where their balls are printed
     asperity bearing --list
-    # loads, contact ellipses, pressures, stiffness, tones; films of oil
+    # loads, contact ellipses, pressures, stiffness, tones
     asperity bearing 6205 --radial '100 N' --speed '1797 1/min'
+    # films of oil, too
     asperity bearing 6205 --radial '100 N' --speed '1797 1/min' --oil 'ISO VG 68' --temperature '60 degC'
-    # loads of the balls as a picture; a data sheet
+    # loads of the balls as a picture
     asperity bearing own.toml --axial '50 N' -o load.png
+    # a data sheet
     asperity bearing own.toml --axial '50 N' --sheet own.html
     # is there a fault? lines of the envelope beside those expected
     asperity bearing 6205 --speed '1797 1/min' --signal run.npz --rate '12 kHz' -o envelope.png

@@ -44,6 +44,11 @@ COLLECT_AFTER = 1_000_000
 """New objects until unused ones are sought: imports and figures make many, and few are ever unused."""
 
 
+def templates() -> tuple[str, ...]:
+    """List what 'asperity new' can write."""
+    return (*kinds(), *TEMPLATES)
+
+
 class Command(click.Command):
     """A command whose help ends with the examples of its docstring, where KIND is the first kind of case.
 

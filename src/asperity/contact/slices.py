@@ -73,7 +73,7 @@ class SlicedContact:
 
     Examples
     --------
-    >>> from asperity.contact.crowning import Crowning
+    >>> from asperity import Crowning, SlicedContact
     >>> roller = SlicedContact(113.7e9, 3.25e-3, Crowning.iso(length=6e-3, diameter=7.5e-3))
     >>> straight = roller.approach(500.0)
     >>> f"{straight * 1e6:.2f} um; tilted by 2': {roller.pressed(straight, 5.8e-4).moment * 1e3:.0f} N mm"

@@ -1,5 +1,6 @@
 """What is measured at a ball bearing: tones of its parts, velocities in bands, lines of the envelope."""
 
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -59,9 +60,10 @@ def _of_angle(case: AnyCase) -> tuple[str, ...]:
 
 
 def _collect_velocity(tree: DataTree) -> Collected:
-    held = (bearing.BAND_VELOCITY, bearing.BAND_DEVIATION)
-    first = {entry.name: tree[entry.path].isel(law=0, ring_sensor=0) for entry in held}
-    return {name: np.asarray(each.values) for name, each in first.items()}
+    found = {bearing.BAND_VELOCITY.name: tree[bearing.BAND_VELOCITY.path]}
+    with suppress(KeyError):  # as of a record too short to tell it
+        found[bearing.BAND_DEVIATION.name] = tree[bearing.BAND_DEVIATION.path]
+    return {name: np.asarray(each.isel(law=0, ring_sensor=0).values) for name, each in found.items()}
 
 
 def _in_iso_bands(values: Array, at: Array) -> Array:
@@ -78,6 +80,8 @@ def _velocity(trial: Predictable, measured: Measured) -> Values:
 
 def _chance_of_velocity(collected: Collected, measured: Measured) -> Array:
     """Standard deviation of a velocity by the chance of one record (n,), dB."""
+    if bearing.BAND_DEVIATION.name not in collected:
+        return np.zeros(len(measured.at))
     return 20.0 / np.log(10.0) * _in_iso_bands(collected[bearing.BAND_DEVIATION.name], measured.at)
 
 

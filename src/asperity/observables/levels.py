@@ -1,5 +1,6 @@
 """Levels in one-third octaves of a run: sound beside a track, contact force, acceleration."""
 
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -42,8 +43,8 @@ def _collect(entry: Entry, tree: DataTree) -> Collected:
     if "contact" in levels.dims:
         levels = levels.isel(contact=0)
     held = {entry.name: levels}
-    if spectra.LEVEL_DEVIATION.name in (over := tree[spectra.LEVEL_DEVIATION.group]):
-        held[spectra.LEVEL_DEVIATION.name] = over[spectra.LEVEL_DEVIATION.name]
+    with suppress(KeyError):  # as of a run that told none
+        held[spectra.LEVEL_DEVIATION.name] = tree[spectra.LEVEL_DEVIATION.path]
     found = Collected()
     for name, each in held.items():
         found |= {name: np.asarray(each.values), f"{name}_band": np.asarray(each["band"].values)}
