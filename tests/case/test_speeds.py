@@ -6,6 +6,7 @@ import pytest
 from asperity import BallOnBeam, BearingUnderLoad, Bodies, read_case
 from asperity.case.form import content
 from asperity.errors import CaseError, InputError
+from asperity.scenarios.prepared_bearing import expected, prepare_bearing
 from asperity.serving.case_form import case_data
 from asperity.speeds import SpeedCourse
 from refusals import refusals
@@ -109,3 +110,12 @@ def test_the_page_reads_no_table_that_a_speed_names():
     values = {"speed": "/etc/speeds.csv", "radial": "100 N"}
     with pytest.raises(InputError, match="Write its points"):
         case_data("ball-bearing", values, lambda _: None)
+
+
+def test_what_is_planned_of_a_run_up_says_of_which_speed_tones_are():
+    """Smooth parts have no runs of their own."""
+    rows, rows_at_one_speed = (
+        dict(expected(prepare_bearing(turning(speed)))[0]) for speed in (RUN_UP, "1800 1/min")
+    )
+    assert rows["tones"] == rows_at_one_speed["tones"] + " at the fastest"
+    assert rows["runs"] == "table, areal, hertz"

@@ -58,6 +58,14 @@ def test_a_point_more_than_a_digit_off_is_told(line, decimals, side, data):
         positions.line(np.round(x, decimals + 1), np.zeros(count), "f")
 
 
+def test_points_that_stand_in_no_order_and_are_printed_alike_are_at_one_place():
+    """In order the two 1e+03 at the end are neighbours; shuffled, nothing tells them apart."""
+    x = printed(even(0.0, 1.6171875, 621), ".3g")
+    shuffled = np.random.default_rng(1).permutation(621)
+    index, _ = positions.places(x[shuffled], "x")
+    assert np.sort(index)[-2:].tolist() == [619, 619]
+
+
 @pytest.mark.parametrize("x", [
     np.cumsum(1.0 + 0.03 * np.arange(400) / 400),  # the spacing grows by 3 %
     np.sort(np.random.default_rng(2).random(400)) * 400,

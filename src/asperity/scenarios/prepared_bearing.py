@@ -21,7 +21,7 @@ from asperity.scenarios.raceway_films import films_on
 from asperity.scenarios.raceway_laws import OnRaceway
 from asperity.scenarios.raceway_limits import doubt_fault, doubt_surface
 from asperity.scenarios.roller_raceways import on_surface, surface_on
-from asperity.speeds import slowest
+from asperity.speeds import SpeedCourse, slowest
 from asperity.store import Store
 from asperity.structures.ball_bearing import PARTS
 from asperity.structures.bearing_statics import doubt_speed
@@ -191,19 +191,21 @@ def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], preparin
     load, angle = max(load for _, load in case.contacts), np.degrees(found.contact_angle)
     touching, at_rest = (each.static.touching for each in (case, case.with_(centrifugal=False)))
     held = f"{rounded(touching.mean())} of {found.bearing.balls} on average, {touching.min():.0f} or more"
+    alone = f", and {runs - len(case.laws)} by areal with parts alone" if textured else ""
+    fastest = " at the fastest" if isinstance(case.speed, SpeedCourse) else ""
     rows = [
         (
             f"heaviest load of a {found.bearing.ELEMENT}",
             f"{in_newtons(load)}, contact angle {rounded(angle)}°",
         ),
         (f"{found.bearing.ELEMENT}s that touch both rings", f"{held}; at rest {rounded(at_rest.mean())}"),
-        ("tones", f"{tones}; cage {rounded(turning.cage, 4)} Hz"),
+        ("tones", f"{tones}; cage {rounded(turning.cage, 4)} Hz{fastest}"),
         (
             "time",
             f"{steps} steps of {rounded(case.step * 1e6, 4)} µs, {case.settling:g} s of them "
             "before the record",
         ),
-        ("runs", f"{', '.join(case.laws)}, and {runs - len(case.laws)} by areal with parts alone"),
+        ("runs", ", ".join(case.laws) + alone),
         *((f"contact solutions, {name}", f"at most {count}") for name, count in solutions.items()),
         *films_in_words(prepared),
         ("not in it", omitted_from(case)),
