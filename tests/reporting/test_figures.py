@@ -13,7 +13,7 @@ from asperity.reporting.data import law_entries, missing
 from asperity.reporting.paper import as_seen
 from asperity.reporting.texture_figures import distribution, height_histogram
 from asperity.scenes.figures.force import TO_REFERENCE
-from asperity.schema import contact
+from asperity.schema import bearing, contact
 
 SPECTRA = ("force_bands", "force_psd", "acceleration_sensors", "acceleration_laws")
 OF_LAWS = ("force_psd", "force_bands", "acceleration_laws", "force_peak", "force_envelope")
@@ -129,6 +129,12 @@ def test_gaps_are_told_in_plain_words(tree):
     told = "Gaps in the contact filter, fitted magnitude: the samples do not touch in these states, or have"
     assert missing(gaps, contact.FILTER).startswith(told)
     assert missing(xr.DataTree(), contact.FILTER) == ""
+    films = bearing.FILM_THICKNESS, bearing.LEAST_FILM
+    no_film = {each.name: each.variable(np.array([[[1e-7, np.nan]]])) for each in films}
+    gaps = xr.DataTree.from_dict({"bearing": xr.Dataset(no_film)})
+    assert missing(gaps, *films) == (
+        f"Gaps in the {films[0].long_name} and in the {films[1].long_name}: {films[0].missing}."
+    )
 
 
 # --- the texture

@@ -97,11 +97,12 @@ def leave_to_bearing(tree: DataTree) -> None:
 def missing(tree: DataTree, *entries: Entry) -> str:
     """Say of which of these variables values are missing, and why; nothing where none is."""
     found = [each for entry in entries if (each := stored_variable(tree, entry)) is not None]
-    return " ".join(
-        f"Gaps in the {each.attrs['long_name'].replace(': ', ', ')}: {each.attrs['missing']}."
-        for each in found
-        if "missing" in each.attrs
-    )
+    reasons: dict[str, list[str]] = {}
+    for each in found:
+        if "missing" in each.attrs:
+            name = f"the {each.attrs['long_name'].replace(': ', ', ')}"
+            reasons.setdefault(each.attrs["missing"], []).append(name)
+    return " ".join(f"Gaps in {' and in '.join(names)}: {reason}." for reason, names in reasons.items())
 
 
 def stated(tree: DataTree, attribute: Attribute) -> Any:
