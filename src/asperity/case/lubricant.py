@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -131,14 +130,7 @@ class Oiled:
     @property
     def passing_speeds(self) -> tuple[float, float]:
         """Speeds with which contacts move along the inner and the outer raceway, m/s."""
-        turning = self.kinematics
-        inner, outer = (
-            2.0 * math.pi * radius * abs(turning.cage - ring)
-            for radius, ring in zip(
-                self.bearing.bearing.raceway_radii, (turning.inner, turning.outer), strict=True
-            )
-        )
-        return inner, outer
+        return self.kinematics.passing_speeds(self.bearing.bearing.raceway_radii)
 
     @cached_property
     def films(self) -> tuple[Film, Film] | None:

@@ -1,6 +1,5 @@
 """``asperity bearing --oil``: how thick films of oil are under the heaviest loads of the balls."""
 
-import math
 from typing import Any
 
 from asperity.case.ball_bearing import BearingKeys
@@ -22,16 +21,15 @@ def say_films(keys: BearingKeys, found: LoadedBearing) -> list[dict[str, Any]] |
     turning = of.kinematics(keys.speed, contact_angle=found.contact_angle)
     told: list[dict[str, Any]] = []
     rows = []
-    for ring, contact, radius, turns, loads in zip(
+    for ring, contact, speed, loads in zip(
         RINGS,
         (of.inner_contact, of.outer_contact),
-        of.raceway_radii,
-        (turning.inner, turning.outer),
+        turning.passing_speeds(of.raceway_radii),
         (found.inner_load, found.outer_load),
         strict=True,
     ):
         load = float(loads.max())
-        film = keys.lubricant.film(contact, 2.0 * math.pi * radius * abs(turning.cage - turns))
+        film = keys.lubricant.film(contact, speed)
         assert film is not None
         central = film.central(load)
         least = film.minimum(load)

@@ -16,8 +16,6 @@ HALF_WINDOW = 3.0
 """Half the window along the path over the half width of the slice that is pressed most."""
 CARRIES = 0.25
 """Pressure at an end over the largest without ends, from which on it is told that the roller ends there."""
-STEPS = 60
-"""Halvings of the interval that holds the approach of tilted slices."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +99,7 @@ def solved_roller(
     allowed = "two whole numbers, 4 or more to the half width, and 30 or more to the length"
     to_width = whole("cells of the roller", cells[0], allowed, at_least=4)
     along = whole("cells of the roller", cells[1], allowed, at_least=30)
-    pressures = sliced.pressures(_pressed(sliced, force, tilt))
+    pressures = sliced.pressures(sliced.pressed(sliced.approach(force, tilt), tilt).loads)
     half_width = 2.0 * sliced.radius * float(pressures.max()) / sliced.modulus
     spacing = half_width / to_width, sliced.length / along
     path = spacing[0] * np.arange(-round(HALF_WINDOW * to_width), round(HALF_WINDOW * to_width) + 1)
@@ -121,13 +119,3 @@ def solved_roller(
     return SolvedRoller(
         np.asarray(places, dtype=float), np.asarray(line_load), np.asarray(highest), moment, found
     )
-
-
-def _pressed(sliced: SlicedContact, force: float, tilt: float) -> Array:
-    """Loads of slices (n,), N, under a force and a tilt."""
-    low = float((sliced.drops - tilt * sliced.places).min())
-    high = low + sliced.approach(force) + abs(tilt) * sliced.length + float(sliced.drops.max())
-    for _ in range(STEPS):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if sliced.pressed(middle, tilt).force < force else (low, middle)
-    return sliced.pressed(high, tilt).loads

@@ -154,13 +154,15 @@ class SlicedContact:
         """
         return float(self.pressed(approach).force)
 
-    def approach(self, force: float) -> float:
-        """Approach without tilt under a force, m.
+    def approach(self, force: float, tilt: float = 0.0) -> float:
+        """Approach of the middle under a force, m.
 
         Parameters
         ----------
         force : float
             N.
+        tilt : float
+            As of `pressed`, rad.
 
         Returns
         -------
@@ -168,17 +170,19 @@ class SlicedContact:
             m.
         """
         force = not_negative("force (N)", force)
-        if force == 0.0:
+        if force == 0.0 and tilt == 0.0:
             return 0.0
+        touch = float((self.drops - tilt * self.places).min())
+        way = (force / self.stiffness_constant) ** (1.0 / EXPONENT)
         # from above, where Newton's steps on a convex force do not overshoot
-        high = float(self.drops.min()) + (force / self.stiffness_constant) ** (1.0 / EXPONENT)
-        while self.force(high) < force:
-            high *= 2.0
-        for _ in range(STEPS):
-            found = self.pressed(high)
+        while self.pressed(touch + way, tilt).force < force:
+            way *= 2.0
+        high = touch + way
+        for _ in range(STEPS if force else 0):
+            found = self.pressed(high, tilt)
             step = (float(found.force) - force) / float(found.stiffness[0, 0])
             high -= step
-            if abs(step) <= 1e-14 * high:
+            if abs(step) <= 1e-14 * abs(high):
                 break
         return high
 

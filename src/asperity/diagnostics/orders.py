@@ -31,6 +31,8 @@ def turns_of(speeds: ArrayLike, rate: float) -> Array:
     return np.concatenate([[0.0], done])
 
 
+LEAST_CHANGE = 1.1
+"""Factor between the speeds of a run-up, at least, to tell what follows them from what stays."""
 EDGES = 5
 """Pulses of a tacho, at least."""
 QUANTILES = (0.02, 0.98)
@@ -244,7 +246,7 @@ def resonances_apart(found: RunUp, *, lowest: float) -> ToldApart:
     """
     share = found.speed.max() / found.speed.min()
     allowed = "speeds that differ by a tenth at least: at one speed nothing tells them apart"
-    require(share >= 1.1, "run-up", f"speeds within a factor of {rounded(share, 4)}", allowed)
+    require(share >= LEAST_CHANGE, "run-up", f"speeds within a factor of {rounded(share, 4)}", allowed)
     highest = float(found.frequency[-1])
     require(lowest < 0.5 * highest, "lowest (Hz)", lowest, f"less than {rounded(0.5 * highest)}")
     bands = np.floor(PER_OCTAVE * np.log2(np.maximum(found.frequency, 1e-300) / lowest)).astype(int)

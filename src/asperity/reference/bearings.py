@@ -102,9 +102,19 @@ def _millimetres(length: float) -> str:
     return f"{1e3 * length:.6g}"
 
 
-def _metres(millimetres: Any) -> float | None:
+def _metres(millimetres: Decimal | int) -> float:
     """Exactly the number that is written, in m."""
-    return None if millimetres is None else float(Decimal(millimetres).scaleb(-3))
+    return float(Decimal(millimetres).scaleb(-3))
+
+
+def _printed(row: Mapping[str, Any], symbol: str) -> float | None:
+    """A length of a row, m, if it is printed."""
+    return _metres(row[symbol]) if symbol in row else None
+
+
+def _pitch_diameter(row: Mapping[str, Any]) -> float:
+    """As it is printed, or the mean of bore and outside diameter, m."""
+    return _metres(row["Dpw"] if "Dpw" in row else Decimal(row["d"] + row["D"]) / 2)
 
 
 def _read() -> dict[str, ListedBearing]:
@@ -120,15 +130,13 @@ def _read() -> dict[str, ListedBearing]:
                 citation=source["citation"],
                 prints=source["prints"],
                 balls=row["Z"],
-                ball_diameter=float(_metres(row["Dw"]) or 0.0),
-                pitch_diameter=float(
-                    _metres(row.get("Dpw", Decimal(row.get("d", 0) + row.get("D", 0)) / 2)) or 0.0
-                ),
+                ball_diameter=_metres(row["Dw"]),
+                pitch_diameter=_pitch_diameter(row),
                 is_pitch_printed="Dpw" in row,
                 contact_angle=None if angle is None else math.radians(angle),
-                bore=_metres(row.get("d")),
-                outside_diameter=_metres(row.get("D")),
-                width=_metres(row.get("B")),
+                bore=_printed(row, "d"),
+                outside_diameter=_printed(row, "D"),
+                width=_printed(row, "B"),
                 tones=tuple(map(float, row.get("tones", ()))),
             )
     return found

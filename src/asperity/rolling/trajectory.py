@@ -81,8 +81,3 @@ class Path:
         """Those of all contacts."""
         spacing = None if isinstance(self.speed, SpeedCourse) else self.speed * self.time_step
         return [Trajectory(partial(at_steps, along), self.rates, spacing) for along in self.positions]
-
-    @property
-    def time(self) -> Array:
-        """Times of the record, s, from zero."""
-        return np.asarray(self.time_step * np.arange(self.total + 1 - self.settled))

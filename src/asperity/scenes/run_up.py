@@ -3,7 +3,7 @@
 import numpy as np
 
 from asperity.arguments import Array
-from asperity.diagnostics.orders import RunUp, order_spectrum, resonances_apart, run_up
+from asperity.diagnostics.orders import LEAST_CHANGE, RunUp, order_spectrum, resonances_apart, run_up
 from asperity.scenes.computed_bearing import ComputedBearing
 from asperity.scenes.observer import Observer
 from asperity.schema import Values, bearing
@@ -17,8 +17,6 @@ SPEEDS, FREQUENCIES = 48, 512
 """Ranges of speed and of frequency that are laid out, at most."""
 LINES_OF_A_BAND = 40.0
 """Lowest frequency told apart, over the resolution: then each band of 1/24 octave holds a line."""
-FACTOR = 1.1
-"""By which speeds must differ, to tell what follows them from what stays."""
 HIGHEST_ORDER = 200.0
 
 
@@ -47,7 +45,7 @@ def run_up_group(computed: ComputedBearing) -> Values:
     pieces = run_up(first.acceleration[0], rate, case.speed.at(first.time), resolution=resolution)
     lowest = LINES_OF_A_BAND * resolution
     found |= laid_on_speeds(pieces, case.highest_frequency)
-    if pieces.speed.max() < FACTOR * pieces.speed.min() or 2.0 * lowest >= case.highest_frequency:
+    if pieces.speed.max() < LEAST_CHANGE * pieces.speed.min() or 2.0 * lowest >= case.highest_frequency:
         return found
     apart = resonances_apart(pieces, lowest=lowest)
     heard = apart.frequency <= case.highest_frequency

@@ -161,12 +161,11 @@ def scene_surface(case: Case) -> PressedSurface:
 def raceway_surface(case: BearingUnderLoad) -> PressedSurface:
     """The most loaded ball on the outer raceway: over the middle of what is damaged, else where it begins."""
     on = raceways_of(prepare_bearing(case), None)[1]
-    turning = case.kinematics
+    _, passing = case.passing_speeds
     damaged = np.flatnonzero(on.surface.damaged.any(axis=1))
     middle = int(damaged[len(damaged) // 2]) if damaged.size else 0
     rows = (np.arange(len(on.shape.body)) - len(on.shape.body) // 2 + middle) % on.rows
     heights = on_cells(on, on.surface.heights + on.surface.faults)[rows]
-    passing = 2.0 * np.pi * case.bearing.bearing.raceway_radii[1] * abs(turning.cage - turning.outer)
     where = "over the middle of what is damaged" if damaged.size else "where it begins"
     element = case.bearing.bearing.ELEMENT
     source = f"the most loaded {element} on the outer raceway, {where}; long waves lift it as a whole"

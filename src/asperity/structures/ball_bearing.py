@@ -440,6 +440,13 @@ class Kinematics:
         spin = 0.5 * speed * pitch / diameter * (1.0 - gamma**2)
         return cls(balls, inner, outer, cage, spin)
 
+    def passing_speeds(self, raceway_radii: tuple[float, float]) -> tuple[float, float]:
+        """Speeds with which contacts move along the inner and the outer raceway, of such radii, m; m/s."""
+        inner, outer = raceway_radii
+        along_inner = 2.0 * math.pi * inner * abs(self.cage - self.inner)
+        along_outer = 2.0 * math.pi * outer * abs(self.cage - self.outer)
+        return along_inner, along_outer
+
     @property
     def turning(self) -> float:
         """Turns of the ring that turns."""

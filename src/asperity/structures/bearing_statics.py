@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -150,13 +151,22 @@ class LoadedBearing:
         def all_touch(speed: float) -> bool:
             return bool(_solved(of, self.radial, self.axial, speed, angles).touching.min() == of.balls)
 
-        low = 0.0
-        high = self.speed
-        if high == 0.0 or self.touching.min() == of.balls or not all_touch(low):
-            return None
-        for _ in range(SPEEDS):
-            low, high = (middle, high) if all_touch(middle := 0.5 * (low + high)) else (low, middle)
-        return high
+        return None if self.touching.min() == of.balls else speed_of_leaving(all_touch, self.speed)
+
+
+def speed_of_leaving(all_touch: Callable[[float], bool], fastest: float) -> float | None:
+    """Turns per second from which on not all touch that do at rest, up to one at which they do not.
+
+    None of what stands still, or where they do not at rest.
+    """
+    if fastest == 0.0 or not all_touch(0.0):
+        return None
+    low = 0.0
+    high = fastest
+    for _ in range(SPEEDS):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if all_touch(middle) else (low, middle)
+    return high
 
 
 def load_distribution(

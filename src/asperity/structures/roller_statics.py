@@ -11,7 +11,7 @@ import numpy as np
 from asperity.arguments import Array, ArrayLike, finite_array, not_negative, require
 from asperity.contact.slices import SlicedContact
 from asperity.errors import ComputationError, Grade, InputError, OutOfRangeWarning, percent
-from asperity.structures.bearing_statics import SPEEDS, STEPS
+from asperity.structures.bearing_statics import STEPS, speed_of_leaving
 from asperity.structures.least_energy import TOLERANCE, least_energy
 from asperity.structures.roller_bearing import RollerBearing
 from asperity.written_numbers import rounded
@@ -134,13 +134,8 @@ class LoadedRollers:
             found = _solved(self.bearing, load, self.displacement[0, MOMENTS], speed, angles)
             return bool(found.touching.min() == self.bearing.rollers)
 
-        low = 0.0
-        high = self.speed
-        if high == 0.0 or self.touching.min() == self.bearing.rollers or not all_touch(low):
-            return None
-        for _ in range(SPEEDS):
-            low, high = (middle, high) if all_touch(middle := 0.5 * (low + high)) else (low, middle)
-        return high
+        pressed = self.touching.min() == self.bearing.rollers
+        return None if pressed else speed_of_leaving(all_touch, self.speed)
 
 
 def roller_load_distribution(
