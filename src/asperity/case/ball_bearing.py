@@ -19,6 +19,7 @@ from asperity.case.body import DAMPING
 from asperity.case.form import Numbers, Section, name_of, section
 from asperity.case.lubricant import LubricantKeys, Oiled
 from asperity.case.measured_tables import MeasuredBearingKeys
+from asperity.case.named_bearing import NamedBearing
 from asperity.case.ready_lists import IN_BEARINGS, NamedChanges, listed_changes
 from asperity.case.sections import DURATION, DURATION_OR_ZERO
 from asperity.case.speed import Speed, span_of
@@ -106,33 +107,26 @@ class _BearingName(Choice):
         return value
 
 
-class BearingGeometry(Section, parameters=DIMENSIONS):
+class BearingGeometry(NamedBearing, parameters=DIMENSIONS):
     """A ball bearing, named or by its dimensions."""
 
+    MODEL = BallBearing
+    DIMENSIONS = DIMENSIONS
+    NEEDED = NEEDED
     ALTERNATIVES = (("clearance", "contact_angle"),)
 
     name: str | None = optional(_BearingName(), "6205", "named bearing", "the dimensions are given")
 
-    @property
-    def bearing(self) -> BallBearing:
-        """The bearing."""
-        given = {name: getattr(self, name) for name in DIMENSIONS if getattr(self, name) is not None}
-        return BallBearing(**given) if self.name is None else BallBearing.named(self.name, **given)
+    if TYPE_CHECKING:
 
-    def default_of(self, name: str) -> Any:
-        """Value of a key that is left out: a dimension of the named bearing."""
-        if name in DIMENSIONS and self.name is not None and name not in self.given_names:
-            return getattr(self.bearing, name)
-        return super().default_of(name)
+        @property
+        def bearing(self) -> BallBearing:
+            """The bearing."""
 
-    def problems(self) -> Iterator[InputError]:
-        """All dimensions of a bearing without a name, which must be one that can be."""
-        missing = [name for name in NEEDED if getattr(self, name) is None]
-        if self.name is None and missing:
-            received = f"none, and no {' and no '.join(missing)}"
-            yield InputError("name", received, "these, or a name", named_bearings())
-            return
-        yield from _refused(lambda: self.bearing)
+    @classmethod
+    def names_in_words(cls) -> str:
+        """How many names there are, and which command lists them."""
+        return named_bearings()
 
 
 class BearingKeys(BearingGeometry):

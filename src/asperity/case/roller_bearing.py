@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from asperity.case.any_case import LAW
 from asperity.case.ball_bearing import AroundKeys, BearingUnderLoad, FaultKeys
-from asperity.case.form import Section, section
+from asperity.case.form import section
+from asperity.case.named_bearing import NamedBearing
 from asperity.case.ready_lists import NamedChanges
 from asperity.case.speed import span_of
 from asperity.errors import InputError
@@ -31,40 +32,39 @@ def _follows_averages(law: LawSpec) -> bool:
     return Need.AREAL in law.needs and not law.sees_heights
 
 
-class RollerGeometry(Section, parameters=DIMENSIONS):
+OF_CROWNING = {
+    "drop of the crowning": "crowning_drop",
+    "straight middle of the crowning": "crowning_straight",
+}
+"""Keys of what a crowning may be refused for."""
+
+
+class RollerGeometry(NamedBearing, parameters=DIMENSIONS):
     """A roller bearing, named or by its dimensions."""
+
+    MODEL = RollerBearing
+    DIMENSIONS = DIMENSIONS
+    NEEDED = NEEDED
 
     name: str | None = optional(
         Choice(tuple(ROLLER_BEARINGS)), "NU205", "named bearing", "the dimensions are given"
     )
 
-    @property
-    def bearing(self) -> RollerBearing:
-        """The bearing."""
-        given = {name: getattr(self, name) for name in DIMENSIONS if getattr(self, name) is not None}
-        return RollerBearing(**given) if self.name is None else RollerBearing.named(self.name, **given)
+    if TYPE_CHECKING:
 
-    def default_of(self, name: str) -> Any:
-        """Value of a key that is left out: a dimension of the named bearing."""
-        if name in DIMENSIONS and self.name is not None and name not in self.given_names:
-            return getattr(self.bearing, name)
-        return super().default_of(name)
+        @property
+        def bearing(self) -> RollerBearing:
+            """The bearing."""
+
+    @classmethod
+    def names_in_words(cls) -> str:
+        """The names that there are."""
+        return f"Named bearings: {', '.join(ROLLER_BEARINGS)}."
 
     def problems(self) -> Iterator[InputError]:
-        """All dimensions of a bearing without a name, which must be one that can be."""
-        missing = [name for name in NEEDED if getattr(self, name) is None]
-        if self.name is None and missing:
-            remedy = f"Named bearings: {', '.join(ROLLER_BEARINGS)}."
-            yield InputError("name", f"none, and no {' and no '.join(missing)}", "these, or a name", remedy)
-            return
-        try:
-            _ = self.bearing
-        except InputError as error:
-            about = {
-                "drop of the crowning": "crowning_drop",
-                "straight middle of the crowning": "crowning_straight",
-            }
-            yield error.about(about[error.what]) if error.what in about else error
+        """What a bearing lacks, or why it cannot be, by the key of its crowning."""
+        for error in super().problems():
+            yield error.about(OF_CROWNING.get(error.what, error.what))
 
 
 class RollerBearingUnderLoad(BearingUnderLoad):
