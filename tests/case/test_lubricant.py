@@ -5,7 +5,7 @@ import math
 import pytest
 
 from asperity.case.cases import as_case
-from asperity.contact.film import Film, inlet_heating
+from asperity.contact.film import Film, LineFilm, inlet_heating
 from asperity.contact.oil import Oil
 from asperity.errors import CaseError
 from asperity.units import quantity, written
@@ -46,6 +46,25 @@ def test_an_oil_by_its_viscosities_and_a_damping_by_its_time():
     assert case.dampings[0] == pytest.approx(12.5e-6 * film.stiffness(case.contacts[0][1]))
 
 
+@pytest.mark.parametrize("formula", ["pan", "dowson"])
+def test_films_of_rollers_are_those_of_lines_by_the_formula_that_is_asked_for(formula):
+    """Of a NU205 at 1800 1/min: π d_m f (1 − γ²)/2; without oil contacts stay dry."""
+    keys = {"kind": "roller-bearing", "bearing": {"name": "NU205"}, "radial": "2 kN"}
+    case = as_case(keys | {"lubricant": GRADE | {"formula": formula}})
+    oil = Oil.of_grade(68)
+    speed = math.pi * 39e-3 * 30.0 / 2.0 * (1.0 - (7.5 / 39.0) ** 2)
+    left = inlet_heating(oil.viscosity(70.0), oil.thinning(70.0), speed, 0.14)
+    for film, (contact, load), damping in zip(case.films, case.contacts, case.dampings, strict=True):
+        numbers = speed, oil.viscosity(70.0), oil.pressure_viscosity_at(70.0), left
+        alike = LineFilm(contact, *numbers, formula)
+        assert film.central(load) == pytest.approx(alike.central(load))
+        assert film.minimum(load) == pytest.approx(alike.minimum(load))
+        assert damping == film.damping(load)
+    dry = as_case(keys)
+    assert dry.films is None
+    assert dry.dampings == (dry.contact_damping,) * 2
+
+
 def test_a_temperature_is_one_of_degrees_celsius():
     assert quantity("-5 degC", "degC") == -5.0
     assert written(70.0, "degC", "degC") == "70 degC"
@@ -81,9 +100,10 @@ test_what_does_not_go_together_is_told = refusals(
     ),
     ({"lubricant": GRADE, "laws": ["printed"]}, r'laws\[1\]: received "printed"'),
     (
-        {"kind": "roller-bearing", "bearing": {"name": "NU205"}, "lubricant": GRADE},
-        r"lubricant: received an oil; allowed: none: only contacts of balls have a film",
+        {"kind": "roller-bearing", "bearing": {"name": "NU205"}, "lubricant": GRADE | {"formula": "grubin"}},
+        r'lubricant\.formula: received \'grubin\'; allowed: "pan", "dowson"',
     ),
+    ({"lubricant": GRADE | {"formula": "pan"}}, r"lubricant\.formula: received an unknown key"),
     of=lambda keys: as_case(CASE | keys),
     error=CaseError,
 )

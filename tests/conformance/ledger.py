@@ -28,6 +28,7 @@ MEASURED = sorted((ROOT / "docs" / "evidence").glob("measured_*.csv"))
 """What pages of measurements found: columns what, source, measured, computed and deviation, as text."""
 ROOMS = {
     "contacts": "Contact",
+    "films": "Films of oil",
     "frictions": "Friction",
     "reductions": "Contact filters, laws and rolling",
     "bodies": "Beams, balls and wheels",

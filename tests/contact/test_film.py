@@ -1,40 +1,25 @@
 """A film of oil: printed examples, other fits, closed forms; how stiff, damped and thick it is; an oil."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.sparse import diags
 from scipy.sparse.linalg import spsolve
 
-from asperity import Hertz
+from asperity import Crowning, Hertz, SlicedContact
 from asperity.contact import film as films
 from asperity.contact import oil as oils
-from asperity.contact.film import Film, Groups
+from asperity.contact.film import Film, Groups, LineFilm
 from asperity.contact.oil import Oil, viscosity_index
 from refusals import refusals
+from reynolds_lines import solved_film
 
 CONTACT = Hertz(115e9, 3.16e-3, 103e-3)  # about that of a ball and the inner ring of a 6205
 FILM = Film(CONTACT, 1.77, 17.3e-3, 18.5e-9)
-
-
-@pytest.mark.parametrize(("rolled", "printed"), [(0.01, "0.059"), (1.0, "0.281")])
-def test_a_ball_that_rolls_down_a_plate_has_the_film_that_is_printed(rolled, printed):
-    """G. W. Stachowiak and A. W. Batchelor, Engineering Tribology: a problem of its chapter 7.
-
-    A steel ball of 30 mm rolls down 45° from rest. The book takes 1/R' = 1/R_x + 1/R_y, k = 1.0339, and half
-    the speed of the ball.
-    """
-    modulus, radius = 2.1e11 / (1.0 - 0.3**2), 7.5e-3
-    weight = 7800.0 * math.pi / 6.0 * 30e-3**3 * 9.81
-    speed = math.sqrt(10.0 / 7.0 * 9.81 * rolled * math.sin(math.pi / 4))
-    groups = Groups(
-        50e-3 * 0.5 * speed / (modulus * radius),
-        2.2e-8 * modulus,
-        weight * math.cos(math.pi / 4) / (modulus * radius**2),
-        1.0339,
-    )
-    assert f"{1e6 * radius * films.MINIMUM.thickness(groups):.3f}" == printed
+ROLLER = SlicedContact(115e9, 3e-3, Crowning("cylindrical", 8e-3))
+ROLLER_FILM = LineFilm(ROLLER, 1.77, 17.3e-3, 18.5e-9)  # about that on the inner ring of a NU205
 
 
 def test_a_circular_contact_has_the_coefficient_that_is_printed_for_it():
@@ -72,17 +57,57 @@ def test_another_fit_of_elliptic_contacts_has_the_same_film(force, across):
     assert film.central(force) == pytest.approx(by_nijenbanning(film, force), rel=0.17)
 
 
+def line_film(contact, per_length, *numbers, fit="pan"):
+    """Films in the middle and least, m, of a straight roller under a load per length, N/m."""
+    film = LineFilm(SlicedContact(*contact, Crowning("cylindrical", 8e-3)), *numbers, fit=fit)
+    return film.central(8e-3 * per_length), film.minimum(8e-3 * per_length)
+
+
 def test_fits_of_lines_agree_and_a_wide_ellipse_is_nearly_a_line():
     """Pan and Hamrock beside Dowson, a fifth apart; an ellipse with the mean load per length of the line."""
-    numbers = 115e9, 5e-3, 50e3, 2.0, 0.02, 20e-9
-    pan, dowson = (films.line_film(*numbers, fit=fit) for fit in films.LINES)
+    contact, numbers = (115e9, 5e-3), (2.0, 0.02, 20e-9)
+    pan, dowson = (line_film(contact, 50e3, *numbers, fit=fit) for fit in films.LINES)
     assert pan == pytest.approx(dowson, rel=0.22)
     assert pan[1] < pan[0]
     wide = Hertz(115e9, 5e-3, 20.0)
     force = 2000.0
     across = wide.semi_axes(wide.approach(force))[1]
-    line = films.line_film(115e9, 5e-3, 1.2 * force / (2.0 * across), *numbers[3:])
-    assert Film(wide, *numbers[3:]).central(force) == pytest.approx(line[0], rel=0.15)
+    line = line_film(contact, 1.2 * force / (2.0 * across), *numbers)
+    assert Film(wide, *numbers).central(force) == pytest.approx(line[0], rel=0.15)
+
+
+@pytest.mark.parametrize(
+    "numbers",
+    [
+        (1e-12, 2500.0, 2e-5),
+        (1e-12, 5000.0, 1e-4),
+        (2e-11, 5000.0, 1e-4),
+        (5e-11, 2500.0, 5e-4),
+        (5e-11, 5000.0, 2e-5),
+        (5e-11, 5000.0, 5e-4),
+    ],
+)
+def test_films_of_lines_are_solutions_of_reynolds_equation(numbers):
+    """Within a fifth over the range that is told, of an oil that pressure compresses."""
+    formula = films.LINES["pan"]
+    solved = solved_film(*numbers, inlet=8.0 if numbers[2] < 5e-5 else 3.0)
+    found = [fit.thickness(Groups(*numbers)) for fit in (formula.central, formula.minimum)]
+    assert found == pytest.approx(solved, rel=0.2)
+    for name, value in zip(("speed", "material", "load"), numbers, strict=True):
+        least, most = formula.fitted[name]
+        assert least <= value <= most
+
+
+@pytest.mark.parametrize("load", [2e-5, 1e-4])
+def test_dowsons_film_is_that_of_an_oil_that_is_not_compressed(load):
+    """Central film of Dowson and Toyoda, least of Dowson and Higginson: within 2 and 4 per cent."""
+    formula = films.LINES["dowson"]
+    numbers = 1e-11, 5000.0, load
+    central, least = solved_film(*numbers, compressed=False, inlet=4.0)
+    assert formula.central.thickness(Groups(*numbers)) == pytest.approx(central, rel=0.02)
+    assert formula.minimum.thickness(Groups(*numbers)) == pytest.approx(least, rel=0.04)
+    compressed = solved_film(*numbers, inlet=4.0)[0]
+    assert central / compressed == pytest.approx(1.15, abs=0.05)
 
 
 def test_heating_of_the_inlet_leaves_what_is_printed():
@@ -112,6 +137,47 @@ def test_a_contact_that_is_pressed_faster_pushes_more():
     pushed = FILM.stiffness(force) * (faster.central(force) - FILM.central(force))
     assert FILM.damping(force) == pytest.approx(pushed / rate, rel=1e-4)
     assert FILM.damping(8.0 * force) == pytest.approx(FILM.damping(force) * 8.0**-0.067, rel=0.01)
+
+
+def test_of_a_roller_bodies_and_film_are_in_series_and_its_edge_draws_oil_in():
+    """k of δ(F) − h(F) by differences; c of a straight roller by da/dt of its edge; c falls as the root."""
+    force, step, rate = 800.0, 0.5, 1e-5
+    delta = [ROLLER.approach(f) - ROLLER_FILM.central(f) for f in (force - step, force + step)]
+    assert ROLLER_FILM.stiffness(force) == pytest.approx(2.0 * step / (delta[1] - delta[0]), rel=1e-5)
+    dry = ROLLER.tangent_stiffness(ROLLER.approach(force))
+    assert 0.98 * dry < ROLLER_FILM.stiffness(force) < dry
+    approach = ROLLER.approach(force)
+    edges = [ROLLER.semi_axes(approach + each)[0] for each in (-1e-9, 1e-9)]
+    faster = replace(ROLLER_FILM, speed=ROLLER_FILM.speed + rate * (edges[1] - edges[0]) / 2e-9)
+    pushed = ROLLER_FILM.stiffness(force) * (faster.central(force) - ROLLER_FILM.central(force))
+    assert ROLLER_FILM.damping(force) == pytest.approx(pushed / rate, rel=1e-4)
+    falls = math.log(ROLLER_FILM.damping(4.0 * force) / ROLLER_FILM.damping(force)) / math.log(4.0)
+    assert falls == pytest.approx(-0.166 - 0.5 + 0.2, abs=0.01)
+
+
+def test_the_film_of_a_roller_is_that_under_its_load_per_length():
+    """W = F/(E' R L), and Hertz's mean pressure F/(2bL); numbers outside the range are told."""
+    U, G, W, _ = ROLLER_FILM.groups(800.0)
+    np.testing.assert_allclose([U, G, W], [0.0173 * 1.77 / (2.3e11 * 3e-3), 4255.0, 1e5 / (2.3e11 * 3e-3)])
+    alike = 3e-3 * 2.922 * U**0.692 * G**0.470 * W**-0.166
+    assert ROLLER_FILM.central(800.0) == pytest.approx(alike)
+    assert ROLLER_FILM.minimum(800.0) == pytest.approx(3e-3 * 1.714 * U**0.694 * G**0.568 * W**-0.128)
+    assert replace(ROLLER_FILM, reduction=0.5).central(800.0) == pytest.approx(0.5 * alike)
+    half_width = math.sqrt(4.0 * 1e5 * 3e-3 / (math.pi * 115e9))
+    assert ROLLER_FILM.mean_pressure(800.0) == pytest.approx(1e5 / (2.0 * half_width), rel=1e-6)
+    assert ROLLER_FILM.of_bodies([2e-6])[0] == pytest.approx(ROLLER.force(2e-6))
+    assert not [*ROLLER_FILM.outside(800.0)]
+    assert [*ROLLER_FILM.outside(80.0)] == ["W 1.45·10⁻⁵ (2·10⁻⁵ to 0.0005)"]
+
+
+def test_oil_that_a_cylinder_squeezes_out_pushes_as_by_reynolds():
+    """d/dx (h³ dp/dx) = −12 η V: dp/dx = −12 η V x/h³, summed twice; 3√2 π η V L (R/h)^1.5 in closed form."""
+    eta, speed, gap, radius = 0.1, 1e-3, 1e-6, 3e-3
+    x = np.sqrt(2.0 * radius * gap) * np.linspace(0.0, 60.0, 200_001)
+    slope = -12.0 * eta * speed * x / (gap + x**2 / (2.0 * radius)) ** 3
+    pressure = np.cumsum(slope[::-1])[::-1] * -(x[1] - x[0])
+    force = 8e-3 * 2.0 * float(pressure.sum() * (x[1] - x[0]))
+    assert films.squeeze_force(ROLLER, eta, gap, speed) == pytest.approx(force, rel=1e-3)
 
 
 def test_oil_that_is_squeezed_out_pushes_as_by_reynolds():
@@ -258,7 +324,7 @@ test_what_cannot_be_is_refused = refusals(
     (lambda: viscosity_index(68.0, 1.0), "viscosity at 100 °C (mm²/s): received 1.0; allowed: 2 or more"),
     (lambda: Film(CONTACT, 0.0, 0.02, 2e-8), "speed of the film"),
     (lambda: FILM.central(0.0), "force (N)"),
-    (lambda: films.line_film(1e11, 1e-3, 1e4, 1.0, 0.0, 2e-8), "viscosity of the line contact"),
-    (lambda: films.line_film(1e11, 1e-3, 1e4, 1.0, 0.1, 2e-8, fit="grubin"), "fit of the film"),
+    (lambda: LineFilm(ROLLER, 1.0, 0.0, 2e-8), "viscosity of the film"),
+    (lambda: LineFilm(ROLLER, 1.0, 0.1, 2e-8, fit="grubin"), "fit of the film"),
     (lambda: films.asperity_share(np.zeros((4, 4)), (1e-6, 1e-6), 1e11, 0.0, 1e9), "film (m)"),
 )

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from asperity.contact.film import Film
+from asperity import Crowning, SlicedContact
+from asperity.contact.film import Film, LineFilm
 from asperity.contact.hertz import in_groove
 from asperity.errors import InputError
 from asperity.laws.film import LIGHTEST, WithFilm
@@ -74,6 +75,23 @@ def test_a_linear_law_is_softer_and_nearer_by_the_film():
     assert working == pytest.approx(LOAD)
     assert (further - working) / 1e-8 == pytest.approx(FILM.stiffness(LOAD), rel=1e-6)
     assert FILM.stiffness(LOAD) < stiffness
+
+
+def test_a_roller_and_its_film_are_in_series():
+    """δ(F) = δ(F) of the slices − h(F), h ~ F^-0.166; of crowned ones, too."""
+    for crowning in (Crowning("cylindrical", 8e-3), Crowning.iso(8e-3, 7.5e-3)):
+        roller = SlicedContact(115e9, 3e-3, crowning)
+        film = LineFilm(roller, 1.77, 17.3e-3, 18.5e-9)
+        load = 800.0
+        at = roller.approach(8.0 * load) * np.geomspace(1e-3, 1.0, 200)
+        pressed = roller.pressed(at)
+        dry = ForceCurve.from_samples(at, pressed.force, 10 / 9, pressed.stiffness[:, 0, 0])
+        forces = load * np.geomspace(0.01, 6.0, 20)
+        apart = film.central(load) * (forces / load) ** -0.166
+        law = WithFilm(Shifted(dry, None), film, load)
+        np.testing.assert_allclose(force(law, np.zeros(20), dry.inverse(forces) - apart), forces, rtol=2e-3)
+        state = roller.approach(load)
+        assert float(law.nearer(np.array([state]))[0]) == pytest.approx(state - film.central(load))
 
 
 def test_a_law_of_secants_has_no_film():

@@ -10,7 +10,7 @@ from asperity.case.cases import as_case
 from asperity.contact.film import Film, asperity_share
 from asperity.contact.hertz import Hertz
 from asperity.running import prepare_case
-from asperity.scenarios.prepared_bearing import OILED, expected, prepare_bearing
+from asperity.scenarios.prepared_bearing import expected, prepare_bearing
 from asperity.scenarios.raceway_films import RacewayFilm, rms_within
 from asperity.scenes.bearing_film import OBSERVER
 from asperity.scenes.computed_bearing import compute_bearing
@@ -57,10 +57,10 @@ def test_films_are_those_of_the_formula_under_the_loads_of_the_balls(films):
         assert np.isnan(of["film_parameter"]).all()
     assert "both surfaces are smooth" in found["film_parameter"].attrs["missing"]
     assert found.attrs["oil_viscosity"] == case.films[0].viscosity
-    assert found.attrs["left_out"] == OILED
+    assert found.attrs["left_out"] == BallBearing.LEFT_OUT_OILED
     declared = {each.name: each.units for each in OBSERVER.entries if isinstance(each, Entry)}
     assert declared == {name: found[name].attrs["units"] for name in declared}
-    assert OILED in films.attrs["verdict"]
+    assert BallBearing.LEFT_OUT_OILED in films.attrs["verdict"]
     rows = json.loads(films["contact"].attrs["validity"])
     (row,) = (each for each in rows if "on the inner ring" in each["quantity"])
     assert row["value"].startswith("U 1.")

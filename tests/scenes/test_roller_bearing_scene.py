@@ -1,6 +1,7 @@
 """A roller bearing that runs: what its slices feel of raceways, its static solution, its tones, refusals."""
 
 import json
+import tomllib
 
 import numpy as np
 import pytest
@@ -8,14 +9,15 @@ from scipy.special import j0
 
 import asperity
 from asperity import Crowning, RollerBearing, SlicedContact
-from asperity.case.cases import as_case
+from asperity.case.cases import as_case, case_of
 from asperity.errors import CaseError
 from asperity.laws import Areal
+from asperity.laws.film import WithFilm
 from asperity.reduction.stiffness import ForceCurve
 from asperity.rolling.bearing import BearingRings, roll_bearing
 from asperity.scenarios.prepared_bearing import expected, prepare_bearing, raceways_of
 from asperity.scenarios.roller_raceways import OnRollerRaceway, on_surface, surface_on
-from asperity.scenes.figures.bearing import along_roller, ball_contacts_table
+from asperity.scenes.figures.bearing import along_roller, ball_contacts_table, films_table
 from asperity.serving.contact_preview import PressedSample
 from asperity.structures.ring import Ring
 from asperity.surfaces.faults import Fault
@@ -103,6 +105,67 @@ def test_it_starts_as_the_static_solution_and_carries_the_load():
     np.testing.assert_allclose(moved, still.displacement[0, :2], rtol=1e-3, atol=1e-9)
 
 
+def test_slow_rings_with_films_stand_as_in_a_static_solution_with_them():
+    """Of rollers without mass: Σ Q_j cos ψ_j = F with δ_i(Q) + δ_o(Q) − h_i(Q) − h_o(Q) = u cos ψ_j."""
+    case = as_case(CASE | {"radial": "1 kN", "lubricant": {"oil": "ISO VG 68"}})
+    bearing = RollerBearing.named("NU205", rollers=7)
+    laws, loads = [], [load for _, load in case.contacts]
+    for film, load in zip(case.films, loads, strict=True):
+        at = film.contact.approach(8.0 * load) * np.geomspace(1e-3, 1.0, 400)
+        found = film.contact.pressed(at)
+        curve = ForceCurve.from_samples(at, found.force, 10 / 9, found.stiffness[:, 0, 0])
+        laws.append(WithFilm(Areal(curve, None, 20.0), film, load))
+    rings = BearingRings(Ring.rigid(0.5), Ring.rigid(0.3, radial_stiffness=1e8, damping_ratio=0.02))
+    run = roll_bearing(
+        bearing, rings, *laws, speed=0.1, radial=1000.0, duration=2e-5, time_step=1e-6, centrifugal=False
+    )
+    forces = np.geomspace(0.01, 2000.0, 4000)
+    nearer = np.zeros(len(forces))
+    for film, load in zip(case.films, loads, strict=True):
+        dry = np.array([film.contact.approach(each) for each in forces])
+        nearer += dry - film.central(load) * (forces / load) ** film.formula.central.load
+    angles = run.cage[0] + 2.0 * np.pi * np.arange(7) / 7
+    moved = run.inner_motion[:2, 0] - run.outer_motion[:2, 0]
+    gap = moved @ np.array([np.cos(angles), np.sin(angles)]) - 0.5 * bearing.clearance
+    loads = np.interp(gap, nearer, forces, left=0.0)
+    np.testing.assert_allclose(run.inner_force[:, 0], loads, rtol=5e-3, atol=0.2)
+    assert loads @ np.cos(angles) == pytest.approx(1000.0, rel=2e-3)
+    apart = sum(film.central(load) for film, load in zip(case.films, [loads.max()] * 2, strict=True))
+    dry = bearing.loaded(1000.0, cage_angles=run.cage[:1]).displacement[0, 0]
+    assert apart < dry - moved[0] < 1.6 * apart  # films of rollers that carry less are thicker
+
+
+@pytest.fixture(scope="module")
+def oiled():
+    changes = {"lubricant": {"oil": "ISO VG 68"}, "outer_raceway": {"roughness": "20 nm"}}
+    few = {"name": "NU205", "rollers": 9}
+    times = {"speed": "6000 1/min", "bearing": few, "duration": "50 ms", "settling": "5 ms"}
+    return asperity.run(as_case(CASE | changes | times), brief=True)
+
+
+def test_a_run_with_oil_tells_the_films_of_its_rollers(oiled):
+    found = oiled["bearing"].dataset
+    case = case_of(tomllib.loads(oiled.attrs["case"]))
+    for ring, film in zip(("inner", "outer"), case.films, strict=True):
+        of = found.sel(ring=ring)
+        load = float(of["ball_load"].max())
+        assert float(of["heaviest_film"]) == pytest.approx(film.central(load))
+        assert float(of["film_stiffness"]) == pytest.approx(film.stiffness(load))
+        assert float(of["film_damping"]) == pytest.approx(film.damping(load))
+    outer = found.sel(ring="outer")
+    rms = float(outer["film_roughness"])
+    assert 10e-9 < rms < 21e-9
+    assert float(outer["heaviest_film_parameter"]) == pytest.approx(float(outer["least_film"].min()) / rms)
+    assert found.attrs["film_formula"] == "Pan and Hamrock"
+    assert found.attrs["left_out"] == RollerBearing.LEFT_OUT_OILED
+    assert "Pan and B. J. Hamrock" in str(oiled.attrs["citations"])
+    table = films_table(oiled)
+    assert "Film by Pan and Hamrock" in table.note
+    rows = dict(expected(prepare_bearing(case))[0])
+    assert rows["not in it"] == RollerBearing.LEFT_OUT_OILED
+    assert "µm at least; Λ" in next(told for name, told in rows.items() if name.startswith("film, outer"))
+
+
 @pytest.fixture(scope="module")
 def tree():
     fault = {"on": "outer", "length": "1 mm", "width": "6 mm", "depth": "50 um"}
@@ -180,10 +243,6 @@ test_what_no_roller_bearing_has_is_refused = refusals(
     ({"bearing": {}}, "bearing.name: received none, and no rollers and no roller_diameter"),
     ({"bearing": {"name": "NU205", "crowning": "circular", "crowning_drop": "1 mm"}}, "crowning_drop"),
     ({"bearing": {"name": "6205"}}, "bearing.name: received '6205'"),
-    (
-        {"lubricant": {"oil": "ISO VG 68"}},
-        "lubricant: received an oil; allowed: none: only contacts of balls",
-    ),
     ({"axial": "10 N"}, "axial: received 10 N.*contact_angle is 0"),
     of=lambda changes: as_case(CASE | changes),
     error=CaseError,

@@ -7,8 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from asperity.case.form import Section
-from asperity.contact.film import Film, inlet_heating
-from asperity.contact.hertz import Hertz
+from asperity.contact.film import LINES, Film, LineFilm, inlet_heating
 from asperity.contact.oil import DENSITY, GRADES, INDEX, Oil
 from asperity.errors import InputError
 from asperity.laws import Need, spec_of
@@ -27,7 +26,6 @@ class LubricantKeys(Section):
     """The oil between balls and raceways, of which contacts are full."""
 
     ALTERNATIVES = (("oil", "viscosity_40"),)
-
     oil: str | None = optional(
         Choice(tuple(f"{GRADE}{grade}" for grade in GRADES)), f"{GRADE}68", "grade of the oil", "dry contacts"
     )
@@ -84,14 +82,18 @@ class LubricantKeys(Section):
             return None
         return Oil(cool, hot, self.density, self.pressure_viscosity)
 
-    def film(self, contact: Hertz, speed: float) -> Film | None:
-        """The film in a contact whose surfaces roll with a speed, m/s, if there is oil."""
+    def film(self, contact: Any, speed: float) -> Film | None:
+        """The film in a smooth contact whose surfaces roll with a speed, m/s, if there is oil."""
         if (oil := self.found) is None:
             return None
+        return Film(contact, speed, *self._at(oil, speed))
+
+    def _at(self, oil: Oil, speed: float) -> tuple[float, float, float]:
+        """Viscosity, Pa s, its pressure coefficient, 1/Pa, and share that is left of the film at a speed."""
         at = self.temperature
         viscosity = oil.viscosity(at)
         left = inlet_heating(viscosity, oil.thinning(at), speed, oil.conductivity)
-        return Film(contact, speed, viscosity, oil.pressure_viscosity_at(at), left)
+        return viscosity, oil.pressure_viscosity_at(at), left
 
     def damping(self, film: Film, force: float) -> float:
         """Damping of a contact under a force, N, with its film, N s/m."""
@@ -105,9 +107,27 @@ class LubricantKeys(Section):
             yield InputError("viscosity_100", "nothing", "the viscosity at 100 degC, beside viscosity_40")
             return
         try:
-            self.film(Hertz(1e11, 1e-3, 1e-3), 1.0)
+            if (oil := self.found) is not None:
+                self._at(oil, 1.0)
         except InputError as error:
             yield error.about("viscosity_index" if self.oil else "viscosity_100")
+
+
+class RollerLubricantKeys(LubricantKeys):
+    """The oil between rollers and raceways, of which contacts are full."""
+
+    formula: str = key(
+        Choice(tuple(LINES)),
+        "pan",
+        "formula of the film: of Pan and Hamrock, or of Dowson, Higginson and Toyoda",
+        goes_with=_WITH_OIL,
+    )
+
+    def film(self, contact: Any, speed: float) -> Film | None:
+        """The film in a smooth contact whose surfaces roll with a speed, m/s, if there is oil."""
+        if (oil := self.found) is None:
+            return None
+        return LineFilm(contact, speed, *self._at(oil, speed), fit=self.formula)
 
 
 class Oiled:
@@ -124,7 +144,7 @@ class Oiled:
             """What turns how fast."""
 
         @property
-        def contacts(self) -> tuple[tuple[Hertz, float], tuple[Hertz, float]]:
+        def contacts(self) -> Any:
             """Smooth contacts with the inner and the outer ring, and their largest static loads, N."""
 
     @property

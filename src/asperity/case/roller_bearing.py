@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 from asperity.case.any_case import LAW
 from asperity.case.ball_bearing import AroundKeys, BearingUnderLoad, FaultKeys
 from asperity.case.form import section
+from asperity.case.lubricant import RollerLubricantKeys
 from asperity.case.named_bearing import NamedBearing
 from asperity.case.ready_lists import NamedChanges
 from asperity.case.speed import span_of
@@ -98,6 +99,9 @@ class RollerBearingUnderLoad(BearingUnderLoad):
     bearing: RollerGeometry = section(  # type: ignore[assignment]
         RollerGeometry, "the bearing: named, or by its dimensions"
     )
+    lubricant: RollerLubricantKeys = section(
+        RollerLubricantKeys, "the oil: a film in each contact, dry without it"
+    )
     balls: AroundKeys = section(AroundKeys, "what is on each roller all around")
     fault: FaultKeys = section(
         FaultKeys,
@@ -132,10 +136,6 @@ class RollerBearingUnderLoad(BearingUnderLoad):
         if others:
             remedy = "Its force on rollers is that of slices; the others are made for the ellipse of a ball."
             yield InputError("laws", ", ".join(others), f'"{BY_SLICES}"', remedy)
-            return
-        if self.lubricant.found is not None:
-            remedy = "In Python asperity.contact.film.line_film has films of rollers."
-            yield InputError("lubricant", "an oil", "none: only contacts of balls have a film", remedy)
             return
         if self.axial > 0.0 and self.bearing.bearing.contact_angle == 0.0:
             remedy = "Rollers slide along such raceways, and ribs are not in it. Give a contact_angle."

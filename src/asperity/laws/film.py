@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from asperity.arguments import Array, require
-from asperity.contact.film import CENTRAL, Film
+from asperity.contact.film import Film
 from asperity.kernels.curves import monotone_slopes
 from asperity.kernels.pointforce import SHIFTED, TABLE, Prepared, evaluate_all
 from asperity.laws import spec
@@ -96,7 +96,7 @@ class WithFilm:
             film = self.thickness(force)
             missed = overlap - film - (approach - dry.touches)
             rising = overlap * (
-                1.0 - CENTRAL.load * film * stiffness / np.maximum(force, LIGHTEST * self.load)
+                1.0 - self._exponent * film * stiffness / np.maximum(force, LIGHTEST * self.load)
             )
             overlap = np.maximum(overlap * np.exp(np.clip(-missed / rising, -2.0, 2.0)), least)
         force, _, _ = evaluate_all(dry, dry.planes + dry.touches + overlap, 0)
@@ -105,14 +105,17 @@ class WithFilm:
 
     def nearer(self, approaches: Array) -> Array:
         """Approaches (k,), m, less the film of a smooth contact at each."""
-        contact = self.film.contact
-        dry = contact.stiffness_constant * np.maximum(approaches, 0.0) ** 1.5
-        return np.asarray(approaches - self.thickness(dry))
+        return np.asarray(approaches - self.thickness(self.film.of_bodies(approaches)))
+
+    @property
+    def _exponent(self) -> float:
+        """Power of the force by which the film goes; below zero."""
+        return self.film.formula.central.load
 
     def thickness(self, force: Array) -> Array:
         """Film thickness (k,), m, under forces (k,), N; under hardly any force that of the lightest one."""
         share = np.maximum(force / self.load, LIGHTEST)
-        return np.asarray(self.film.central(self.load) * share**CENTRAL.load)
+        return np.asarray(self.film.central(self.load) * share**self._exponent)
 
     def curve(self, dry: ForceCurve) -> ForceCurve:
         """Force over approach with the film, of that of the dry bodies."""
@@ -130,4 +133,4 @@ class WithFilm:
 
     def _yielding(self, force: Array | float) -> Array:
         """−dh/dF of the film under forces (k,), N; m/N."""
-        return np.asarray(-CENTRAL.load * self.thickness(np.asarray(force)) / force)
+        return np.asarray(-self._exponent * self.thickness(np.asarray(force)) / force)

@@ -45,10 +45,6 @@ ON = {
     "fault": "the fault",
 }
 """Sections of a case that say what is on a part."""
-OILED = (
-    "Contacts are full of oil; there is no friction, no shoulder of a groove, and no tilt of a ring; contact "
-    "angle and static loads are those without oil."
-)
 STEP_TIME, SOLUTION_TIME = 2.0e-6, 1e-3
 """Processor times of a step of one ball with its record and spectra, and of a contact of a scan, s."""
 CELL_TIME = 3.5e-8
@@ -241,7 +237,8 @@ def films_in_words(prepared: PreparedBearing) -> list[tuple[str, str]]:
 
 def omitted_from(case: BearingUnderLoad) -> str:
     """What is not in the computation of a bearing, with oil or without."""
-    return str(case.bearing.bearing.LEFT_OUT) if case.films is None else OILED
+    of = case.bearing.bearing
+    return str(of.LEFT_OUT if case.films is None else of.LEFT_OUT_OILED)
 
 
 def _cells_over_faults(prepared: PreparedBearing) -> float:

@@ -20,16 +20,16 @@ PLACES = 4
 
 @dataclass(frozen=True, eq=False)
 class RacewayFilm:
-    """A film in the contact of a ball and a raceway under a load.
+    """A film in the contact of a ball or roller and a raceway under a load.
 
     Parameters
     ----------
     film : Film
         Between smooth bodies.
     load : float
-        Heaviest static one of a ball, N.
+        Heaviest static one of a ball or roller, N.
     surfaces : tuple of Raceway
-        The raceway, and the ball on its cells if that is not smooth.
+        The raceway, and what rolls on it on its cells if that is not smooth.
     damping : float
         Of the contact, N s/m.
     """
@@ -71,14 +71,9 @@ class RacewayFilm:
             self.surfaces[0].spacing,
             self.film.contact.modulus,
             self.film.central(self.load),
-            self._mean,
+            self.film.mean_pressure(self.load),
         )
         return float(np.mean([asperity_share(np.asarray(each), *numbers) for each in together]))
-
-    @property
-    def _mean(self) -> float:
-        """Mean pressure of the contact, Pa."""
-        return self.load / (math.pi * self.axes[0] * self.axes[1])
 
     @property
     def regime(self) -> str:
@@ -94,7 +89,7 @@ class RacewayFilm:
     def in_words(self) -> str:
         """Its thickness, and what separates the surfaces."""
         central, least = (1e6 * each(self.load) for each in (self.film.central, self.film.minimum))
-        told = f"{rounded(central)} µm in the middle, {rounded(least)} µm at the sides"
+        told = f"{rounded(central)} µm in the middle, {rounded(least)} µm at least"
         if not self.rms:
             return f"{told}; both surfaces are smooth"
         carried = f"asperities carry {percent(self.share)}" if self.share else "asperities carry nothing"

@@ -40,6 +40,7 @@ def films_group(computed: ComputedBearing) -> Values:
         bearing.FILM_DAMPING: [each.damping for each in found],
         bearing.FILM_HEATING: [each.film.reduction for each in found],
         bearing.ASPERITY_SHARE: [each.share for each in found],
+        bearing.FILM_FORMULA: found[0].film.formula.name,
         bearing.OIL_VISCOSITY: found[0].film.viscosity,
         bearing.OIL_PRESSURE: found[0].film.pressure_viscosity,
     }
@@ -58,10 +59,9 @@ def films_doubted(computed: ComputedBearing) -> list[Finding]:
             Finding(
                 f"film on the {ring} ring, numbers outside of its fit",
                 ", ".join(each.outside) or "none",
-                "none outside of the 34 solutions of Hamrock and Dowson",
+                f"none outside of {each.film.formula.fitted_to}",
                 Grade.NOTE if each.outside else None,
-                "The film is that of the formula, continued; a later fit is 5 to 15 % above it.",
-                "Measured films averaged 30 % above the formula (Koye and Winer 1981).",
+                *each.film.formula.beyond,
                 warned=True,
             )
         )
@@ -79,6 +79,15 @@ def films_doubted(computed: ComputedBearing) -> list[Finding]:
     return findings
 
 
+def films_cited(computed: ComputedBearing) -> list[str]:
+    """What the formulas of its films are cited by."""
+    return [
+        films_of(computed)[0].film.formula.source,
+        "W. R. D. Wilson and S. Sheu, J. Lubrication Technology 105 (1983) 187 (heating of the inlet).",
+        "ASTM D341 and D2270, ISO 3448 (viscosity of oils over temperature).",
+    ]
+
+
 OBSERVER = Observer(
     "bearing_film",
     (
@@ -92,6 +101,7 @@ OBSERVER = Observer(
         bearing.FILM_DAMPING,
         bearing.FILM_HEATING,
         bearing.ASPERITY_SHARE,
+        bearing.FILM_FORMULA,
         bearing.OIL_VISCOSITY,
         bearing.OIL_PRESSURE,
     ),
@@ -99,9 +109,5 @@ OBSERVER = Observer(
     needs=("bearing",),
     asked_of=lambda computed: computed.case.films is not None,
     findings=films_doubted,
-    sources=(
-        "B. J. Hamrock and D. Dowson, J. Lubrication Technology 99 (1977) 264 (films of elliptic contacts).",
-        "W. R. D. Wilson and S. Sheu, J. Lubrication Technology 105 (1983) 187 (heating of the inlet).",
-        "ASTM D341 and D2270, ISO 3448 (viscosity of oils over temperature).",
-    ),
+    sources=films_cited,
 )

@@ -65,7 +65,7 @@ LEFT_OUT = _fact("left_out", "text", "what is not in the computation")
 
 # --- its oil
 
-OILED = "of a ball bearing with oil"
+OILED = "of a bearing with oil"
 _film = partial(Entry, "bearing", condition=OILED)
 _oil = partial(Attribute, "bearing", condition=OILED)
 _IDLE = "balls that carry nothing have no contact for a film"
@@ -87,6 +87,7 @@ FILM_STIFFNESS = _film("film_stiffness(ring)", "N/m", "stiffness of a contact wi
 FILM_DAMPING = _film("film_damping(ring)", "N s/m", "damping of a contact with its film")
 FILM_HEATING = _film("film_heating(ring)", "1", "share of the film that the heating of the inlet leaves")
 ASPERITY_SHARE = _film("asperity_share(ring)", "1", "share of the heaviest load that asperities carry")
+FILM_FORMULA = _oil("film_formula", "text", "whose formula the films are by")
 OIL_VISCOSITY = _oil("oil_viscosity", "Pa s", "viscosity of the oil at its temperature, without pressure")
 OIL_PRESSURE = _oil("oil_pressure_viscosity", "1/Pa", "its pressure-viscosity coefficient")
 

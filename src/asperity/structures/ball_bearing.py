@@ -104,6 +104,11 @@ class BallBearing:
         "contact angle is that of the static load."
     )
     """What no computation of it has."""
+    LEFT_OUT_OILED: ClassVar = (
+        "Contacts are full of oil; there is no friction, no shoulder of a groove, and no tilt of a ring; "
+        "contact angle and static loads are those without oil."
+    )
+    """What none with oil has."""
     SOURCE: ClassVar = "H. Hertz, J. reine angew. Math. 92 (1882) 156 (contact of smooth bodies)."
     """Of its contacts."""
 

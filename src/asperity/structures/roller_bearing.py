@@ -94,6 +94,11 @@ class RollerBearing:
         "a roller do not know of each other, nor of sharp ends."
     )
     """What no computation of it has."""
+    LEFT_OUT_OILED: ClassVar = (
+        "Contacts are full of oil; there is no friction, no rib, and no tilt of a ring while it turns; "
+        "slices of a roller do not know of each other, nor of sharp ends; static loads are those without oil."
+    )
+    """What none with oil has."""
     SOURCE: ClassVar = "ISO/TS 16281:2008 (load and stiffness of rollers by slices)."
     """Of its contacts."""
 

@@ -205,7 +205,7 @@ def along_roller(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
     Of(bearing.BALL),
     Of(bearing.AZIMUTH),
     Of(bearing.FILM_THICKNESS, "{ring} ring, in the middle"),
-    Of(bearing.LEAST_FILM, "{ring} ring, at the sides"),
+    Of(bearing.LEAST_FILM, "{ring} ring, least"),
 )
 def ball_films(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
     """Films of all contacts at rest over the azimuth, and three times the roughness that they are to hide."""
@@ -218,7 +218,7 @@ def ball_films(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
         colour, dashes = RINGS[ring]
         for entry, place, width in (
             (bearing.FILM_THICKNESS, "in the middle", 2.0),
-            (bearing.LEAST_FILM, "at the sides", 0.9),
+            (bearing.LEAST_FILM, "least", 0.9),
         ):
             film = 1e9 * data.values(tree, entry)[row].ravel()
             drawn.append(
@@ -231,12 +231,12 @@ def ball_films(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
             told.append(f"{rounded(rms[row])} nm on the {ring} ring")
     yield chart.Panel(AROUND, chart.Axis("film / nm", low=0.0), tuple(drawn), height=4.0)
     yield (
-        "Thickness of the film in the middle and at the sides of each contact under its load at rest; a "
-        "contact that carries nothing has none."
+        "Thickness of the film of each contact under its load at rest, in the middle and where it is least: "
+        "of balls at the sides, of rollers at the outlet. A contact that carries nothing has none."
     )
     if told:
         yield (
-            f"Dotted: where the film at the sides is three times the rms of both surfaces, "
+            f"Dotted: where the least film is three times the rms of both surfaces, "
             f"{' and '.join(told)}: below, asperities touch."
         )
 
@@ -260,10 +260,11 @@ def films_table(tree: DataTree) -> ReportTable | None:
             columns[head] = number_cells(data.values(tree, entry) / unit, form)
     viscosity = 1e3 * (data.number(tree, bearing.OIL_VISCOSITY) or 0.0)
     pressure = 1e9 * (data.number(tree, bearing.OIL_PRESSURE) or 0.0)
+    formula = data.stated(tree, bearing.FILM_FORMULA) or "Hamrock and Dowson"
     note = (
         f"Under the heaviest static load. Its oil has {rounded(viscosity)} mPa s and {rounded(pressure)} "
-        "1/GPa at its temperature; contacts are full of it. Film by Hamrock and Dowson, less what the heat "
-        "of the inlet takes (Wilson and Sheu); Λ is the least film over the rms of both surfaces within the "
+        f"1/GPa at its temperature; contacts are full of it. Film by {formula}, less what the heat of the "
+        "inlet takes (Wilson and Sheu); Λ is the least film over the rms of both surfaces within the "
         "contact: 3 or more a full film, less than 1 boundary lubrication."
     )
     return table("films", "Films of oil", columns, note)
