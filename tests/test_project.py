@@ -49,6 +49,13 @@ def test_recipe_and_archive_say_what_the_project_says():
     assert all(name in text("CONTRIBUTING.md") for name in (*left, "packaging/README.md"))
 
 
+def test_compiled_functions_of_the_image_are_where_only_the_administrator_writes():
+    image = text("packaging/Containerfile")
+    folders = dict(re.findall(r"(ASPERITY_\w+)=(\S+)", image))
+    assert not folders["ASPERITY_KERNELS"].startswith(folders["ASPERITY_CACHE"])
+    assert 'go-w "$ASPERITY_KERNELS"' in image
+
+
 def workflow(name):
     return yaml.safe_load(text(f".github/workflows/{name}.yml"))
 
