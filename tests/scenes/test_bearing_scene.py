@@ -118,7 +118,7 @@ def test_what_a_part_makes_alone_is_told(runs):
     assert alone[0, 2] < 0.1 * whole[2]
     above = np.maximum(alone[1] ** 2 - alone[0] ** 2, 0.0) / np.maximum(alone[1], alone[0]) ** 2
     for band, share in zip(("300 to 1800 Hz", "1800 to 10000 Hz"), above[1:], strict=True):
-        assert f"µm/s in {band} ({100 * share:.0f} % from the fault)" in tree.attrs["verdict"]
+        assert f"µm/s in {band} ({100 * share:.0f} % from the fault" in tree.attrs["verdict"]
     assert "no film of lubricant" in tree.attrs["verdict"]
     assert "Its envelope has lines of the outer raceway (108" in tree.attrs["verdict"]
     smooth = runs(SMOOTH)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
@@ -29,8 +30,10 @@ from asperity.scenarios.prepared_bearing import (
     prepare_bearing,
 )
 from asperity.scenes.bearing_at_rest import DIRECTIONS
+from asperity.scenes.bearing_levels import deviations
 from asperity.scenes.bearing_validity import bearing_findings
 from asperity.scenes.computed_bearing import ComputedBearing, compute_bearing
+from asperity.scenes.figures.sources import loudest
 from asperity.scenes.observer import observed
 from asperity.scenes.observers import OF_BEARINGS
 from asperity.scenes.records import recorded_group
@@ -223,10 +226,10 @@ def _verdict(case: BearingUnderLoad, heard: Values, deciding: Sequence[str]) -> 
     Without, beats of waves of the parts lie in the envelope, some of them where lines of others would.
     """
     of = case.bearing.bearing
-    velocities = heard[bearing.BAND_VELOCITY][0][0]
+    velocities = heard[bearing.BAND_VELOCITY][0]
     told = ", ".join(
         f"{rounded(1e6 * rms)} µm/s in {band}{part}"
-        for rms, band, part in zip(velocities, heard[bearing.JUDGED_BAND], deciding, strict=True)
+        for rms, band, part in zip(velocities[0], heard[bearing.JUDGED_BAND], deciding, strict=True)
         if np.isfinite(rms)
     )
     lines = zip(PARTS, heard[bearing.LINES_FOUND][0], heard[bearing.LINE_FREQUENCY][0], strict=True)
@@ -235,7 +238,8 @@ def _verdict(case: BearingUnderLoad, heard: Values, deciding: Sequence[str]) -> 
         f"{names_in(of)[part]} ({rounded(at[0], 4)} Hz{at_speed})" for part, found, at in lines if found
     )
     law = heard[bearing.LAW][0]
-    lead = f"Radial velocity by {law}: {told or 'no band is sampled'}"
+    first = f" at {rounded(math.degrees(case.sensors[0]))}°" if len(case.sensors) > 1 else ""
+    lead = f"Radial velocity{first} by {law}: {told or 'no band is sampled'}"
     if not np.nan_to_num(velocities).any() and told:
         lead = f"Nothing vibrates by {law}: all {of.ELEMENT}s are carried alike, on surfaces without waves"
     struck = f" Its envelope has lines of {f'the {parts}' if parts else 'no part'}." if case.faults else ""
@@ -253,6 +257,7 @@ def alone(prepared: PreparedBearing, progress: Progress) -> Values:
         return {}
     names = ["perfect surfaces", *(named_on(case, key) for key in textured)]
     found = list[Array]()
+    by_chance = list[Array]()
     if len(case.faults) > 1:
         names[-1] = "the faults"
     for kept in (None, *textured):
@@ -260,24 +265,43 @@ def alone(prepared: PreparedBearing, progress: Progress) -> Values:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", PhysicsWarning)  # of the whole bearing it has been warned
             (run,) = compute_bearing(prepare_bearing(others), progress).runs.values()
-        found.append(band_velocities(run.acceleration[0], case.sampling_rate, quantity="acceleration"))
-        found[-1] *= run.vibrates
-    held = bearing.ALONE_VELOCITY.variable(np.array(found), law=BY_PARTS)
-    return {bearing.SOURCE: names, bearing.ALONE_VELOCITY: held}
+        signal = run.acceleration[0] * run.vibrates
+        found.append(band_velocities(signal, case.sampling_rate, quantity="acceleration"))
+        by_chance.append(deviations(signal, case.sampling_rate))
+    return {
+        bearing.SOURCE: names,
+        bearing.ALONE_VELOCITY: bearing.ALONE_VELOCITY.variable(np.array(found), law=BY_PARTS),
+        bearing.ALONE_DEVIATION: by_chance,
+    }
 
 
 def _deciding(apart: Values) -> list[str]:
-    """Which part makes most of each band, in brackets after a blank; empty where none is known to."""
+    """Which part makes most of each band, or which do within chance, in brackets after a blank.
+
+    Empty where none is known to.
+    """
     found = [""] * len(ISO_BANDS)
     if apart:
-        names = apart[bearing.SOURCE]
-        velocities = apart[bearing.ALONE_VELOCITY].values
-        for band, energy in enumerate(velocities.T**2):
-            if np.isfinite(energy).all():
-                parts = np.append(energy[0], np.maximum(energy[1:] - energy[0], 0.0))
-                share = percent(float(parts.max() / parts.sum()))
-                found[band] = f" ({share} from {names[int(parts.argmax())]})"
+        squares = apart[bearing.ALONE_VELOCITY].values.T ** 2
+        scatter = 2.0 * squares * np.nan_to_num(np.transpose(apart[bearing.ALONE_DEVIATION]))
+        for band in np.flatnonzero(np.isfinite(squares).all(axis=1)):
+            found[band] = _most_of(apart[bearing.SOURCE], squares[band], scatter[band])
     return found
+
+
+def _most_of(names: Sequence[str], squares: Array, scatter: Array) -> str:
+    """The parts that make most of a band, by mean squares (p,) with their scatter, perfect surfaces first."""
+    part = np.append(squares[0], np.maximum(squares[1:] - squares[0], 0.0))
+    scatter = np.append(scatter[0], np.hypot(scatter[1:], scatter[0]))
+    levels = {
+        name: (10.0 * np.log10(own), 10.0 / np.log(10.0) * by_chance / own)
+        for name, own, by_chance in zip(names, part, scatter, strict=True)
+        if own > 0.0
+    }
+    shares = dict(zip(names, part / (part.sum() or 1.0), strict=True))
+    told = [f"{percent(float(shares[name]))} from {name}" for name in loudest(levels)]
+    equal = ", equal within chance" if len(told) > 1 else ""
+    return f" ({' and '.join(told)}{equal})" if told else ""
 
 
 # --- how it was computed

@@ -34,12 +34,12 @@ def levels_group(computed: ComputedBearing) -> Values:
         bearing.SPECTRA_SENSOR: case.sensors,
         bearing.ACCELERATION_LEVEL: computed.levels(accelerations, ACCELERATION_REFERENCE),
         bearing.BAND_DEVIATION: [
-            [_deviations(signal, case.sampling_rate) for signal in run.acceleration] for run in runs.values()
+            [deviations(signal, case.sampling_rate) for signal in run.acceleration] for run in runs.values()
         ],
     }
 
 
-def _deviations(signal: Array, rate: float) -> Array:
+def deviations(signal: Array, rate: float) -> Array:
     """How sure velocities in bands are; nothing of what does not vary."""
     return band_deviations(signal, rate) if np.ptp(signal) > 0.0 else np.full(len(ISO_BANDS), np.nan)
 

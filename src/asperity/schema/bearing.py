@@ -164,6 +164,9 @@ ALONE_VELOCITY = _bearing(
     missing=_BEYOND,
     attributes=("law",),
 )
+ALONE_DEVIATION = _bearing(
+    "alone_velocity_deviation(source, judged_band)", "1", _CHANCE, missing=f"{_BEYOND}, or {_STILL}"
+)
 VELOCITY_AMPLITUDE = _spectra(
     "velocity_amplitude(law, frequency)",
     "m/s",

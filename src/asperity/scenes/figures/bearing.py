@@ -403,15 +403,18 @@ def bands_table(tree: DataTree) -> ReportTable:
         rows += [(str(alone.attrs.get("law")), f"{name} alone") for name in alone["source"].values]
         velocities = np.concatenate([velocities, alone.values])
     columns = {"law": text_cells(law for law, _ in rows), "of": text_cells(what for _, what in rows)}
-    chance = data.values(tree, bearing.BAND_DEVIATION) if data.present(tree, bearing.BAND_DEVIATION) else None
+    by_chance = (
+        each for each in (bearing.BAND_DEVIATION, bearing.ALONE_DEVIATION) if data.present(tree, each)
+    )
+    chance = [data.values(tree, each).reshape(-1, velocities.shape[1]) for each in by_chance]
     for n, (band, values) in enumerate(
         zip(data.words(tree, bearing.JUDGED_BAND), 1e6 * velocities.T, strict=True)
     ):
         columns[f"{band}, µm/s"] = number_cells(values, in_digits(3))
-        if chance is not None:
-            of_records = np.full(len(rows), np.nan)
-            of_records[: chance[..., n].size] = chance[..., n].ravel()
-            columns[f"± by chance, {band}"] = number_cells(of_records, data.in_percent)
+        if chance:
+            of_records = np.concatenate(chance)[:, n]
+            missing = np.full(len(rows) - len(of_records), np.nan)
+            columns[f"± by chance, {band}"] = number_cells([*of_records, *missing], data.in_percent)
     note = (
         "Rms radial velocity of the outer ring; alone: at the first accelerometer, all other parts smooth. "
         "By chance: one standard deviation by eight parts of this record; another seed draws other waves. "
@@ -503,14 +506,29 @@ def ball_sliding_table(tree: DataTree) -> ReportTable | None:
 
 def bearing_answers(tree: DataTree) -> Answers:
     """How quiet the bearing is, in three bands, and which part makes it so."""
-    velocities = data.of_law(tree, bearing.BAND_VELOCITY, _main(tree))[0]
+    velocities = data.of_law(tree, bearing.BAND_VELOCITY, _main(tree)).T
     lead, _, more = str(data.stated(tree, provenance.VERDICT) or "").partition(". ")
     numbers = [
-        HeadlineNumber(band, f"{rounded(1e6 * rms)} µm/s", "rms radial velocity, outer ring")
-        for band, rms in zip(data.words(tree, bearing.JUDGED_BAND), velocities, strict=True)
+        HeadlineNumber(
+            band,
+            f"{rounded(1e6 * of_sensors[0])} µm/s",
+            f"rms radial velocity, outer ring{_where(tree, of_sensors)}",
+        )
+        for band, of_sensors in zip(data.words(tree, bearing.JUDGED_BAND), velocities, strict=True)
     ]
     load, peak = (float(data.values(tree, each).max()) for each in (bearing.BALL_LOAD, bearing.PEAK_PRESSURE))
     heaviest = HeadlineNumber(
         f"heaviest load of a {_element(tree)}", in_newtons(load), f"{peak / 1e9:.2f} GPa at rest"
     )
     return Answers(f"{lead}.", more, (*numbers, heaviest))
+
+
+def _where(tree: DataTree, velocities: chart.Numbers) -> str:
+    """At which of several accelerometers the first velocity is, and the largest; empty of one."""
+    angles = np.degrees(data.values(tree, bearing.SENSOR))
+    if len(angles) == 1:
+        return ""
+    at = f", at {rounded(angles[0])}°"
+    if not np.isfinite(velocities).all() or not (largest := int(np.argmax(velocities))):
+        return at
+    return f"{at}; at most {rounded(1e6 * velocities[largest])} µm/s at {rounded(angles[largest])}°"
