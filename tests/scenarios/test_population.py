@@ -168,7 +168,8 @@ def test_an_even_surface_is_one_population(runs):
     assert stiffness["answer"].startswith("One stiffness is enough: ")
     assert stiffness["value"].startswith("8 samples, coefficient of variation ")
     assert 0.0 < stiffness["effect"] < 1.0
-    assert found["Is the path the same all along?"]["grade"] == ""
+    along = found["Is the path the same all along?"]
+    assert (along["value"], along["effect"]) == ("drawn, not measured", 0.0)
     assert 0.0 < found["How well is the contact filter known?"]["effect"] < 3.0
     assert [row[0].text for row in population_table(result).rows] == list(found)
 
@@ -196,3 +197,24 @@ def test_a_path_that_gets_rougher_is_told(runs):
     found = asked(runs(case))["Is the path the same all along?"]
     assert found["answer"].startswith("The roughness is not the same all along the path")
     assert found["effect"] > 1.0
+
+
+@pytest.mark.parametrize("spectrum", ["iso3095", "cnossos-average"])
+def test_a_path_that_is_drawn_is_not_judged_by_one_realisation_of_it(runs, spectrum):
+    """Of this seed waves of two metres make parts of one metre differ beyond what pieces of these do."""
+    case = {
+        "kind": "wheel-on-rail",
+        "speed": "40 m/s",
+        "laws": ["linear"],
+        "duration": "0.1 s",
+        "settling": "50 ms",
+        "surface": {"spectrum": spectrum},
+        "wheel": {"section": "rigid"},
+        "track": {"name": "uic60"},
+        "contact": {"spacing": "1 mm", "samples": 1, "sample_length": "0.1 m"},
+        "numerics": {"highest_frequency": "3 kHz", "kernel": "scatter"},
+    }
+    tree = runs(case)
+    assert asked(tree)["Is the path the same all along?"]["value"] == "drawn, not measured"
+    assert "along the path" not in tree.attrs["verdict"]
+    assert "Is the path the same" not in tree.attrs["warnings"]

@@ -134,6 +134,11 @@ def _maps(computed: Computed, reduction: Reduction, laws: tuple[str, ...]) -> It
 def _along_path(computed: Computed) -> Iterator[Finding]:
     """Whether the roughness of the path is the same all along it."""
     textures = computed.textures
+    question = "Is the path the same all along?"
+    if _is_drawn(computed):
+        answer = "It is the same all along, as it is drawn of one spectrum: its parts differ by chance."
+        yield _answer(question, "drawn, not measured", answer, 0.0)
+        return
     patch = 2.0 * computed.shape.semi_axes[0]
     levels = levels_along(textures.line[textures.recorded], patch / computed.shape.spacing[0])
     if levels is None:
@@ -149,7 +154,14 @@ def _along_path(computed: Computed) -> Iterator[Finding]:
     brief = f"roughness varies by {beyond:.1f} dB along the path"
     value = f"{len(levels)} parts, p = {rounded(p, 2)}"
     effect = beyond if apart else 0.0
-    yield _answer("Is the path the same all along?", value, answer, effect, brief, tuple(computed.case.laws))
+    yield _answer(question, value, answer, effect, brief, tuple(computed.case.laws))
+
+
+def _is_drawn(computed: Computed) -> bool:
+    """Whether all that is rolled over is drawn: of a spectrum no realisation of it is to be judged."""
+    bodies = {"rail": "surface", "wheel": computed.case.ROLLING}
+    rough = {name for name, heights in computed.textures.parts.items() if heights.any()}
+    return {bodies[name] for name in rough} <= computed.textures.drawn.keys()
 
 
 def levels_along(line: Array, patch: float) -> Array | None:
