@@ -76,3 +76,22 @@ test_messages = refusals(
     (strip, (50, 9, 5.0, 5.0), "widest patch, 10 m.*Enlarge contact.window"),
     of=lambda make, arguments: make(*arguments),
 )
+
+
+def test_states_are_left_out_where_straight_lines_between_the_others_miss_nothing():
+    """Of h = s² + s between states s the steps allowed are 2 √(2 · miss) wide, of a straight one any."""
+    states = np.linspace(0.0, 1.0, 201)
+    positions = np.arange(9.0)
+    shape = np.cos(positions)
+    bowed = StateTexture(np.outer(states**2, shape) + np.outer(states, np.sin(positions)), states, 0.0, 1.0)
+    share = 1e-4
+    found = bowed.with_fewer_states(share)
+    allowed = share * np.abs(bowed.heights).max()
+    between = np.array([np.interp(states, found.approaches, each) for each in found.heights.T]).T
+    assert np.abs(between - bowed.heights).max() <= allowed
+    widest = 2.0 * np.sqrt(allowed)  # a parabola lies d²/4 beside its chord
+    assert np.diff(found.approaches)[:-1] == pytest.approx(widest, abs=0.011)
+    straight = StateTexture(np.outer(1.0 + states, shape), states, 0.0, 1.0).with_fewer_states(1e-9)
+    np.testing.assert_array_equal(straight.approaches, [0.0, 1.0])
+    np.testing.assert_array_equal(straight.heights, np.outer([1.0, 2.0], shape))
+    assert bowed.with_fewer_states(2.0).heights.shape == (1, 9)

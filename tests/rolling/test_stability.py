@@ -10,10 +10,12 @@ from hypothesis import strategies as st
 
 from asperity import Beam, HalfSpace, Track, material
 from asperity.errors import CoarseSamplingWarning, ComputationError, LargeDeflectionWarning
-from asperity.laws import Direct, HertzLaw, Linear
+from asperity.laws import Areal, Direct, HertzLaw, Linear
+from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.texture import StateTexture
 from asperity.rolling import stepper as stepping
 from asperity.rolling import steps
+from asperity.rolling.resolution import steps_per_resonance
 from asperity.rolling.roll import roll_bodies
 from asperity.structures.body import GRAVITY, Body, Wheel
 from asperity.structures.moving_kernel import moving_kernel
@@ -118,6 +120,37 @@ def test_a_contact_is_softened_for_impacts_or_to_be_stable(compliances, stiffnes
     arrays = (np.array([value]) for value in (*compliances, *stiffness, damping, 1e11))
     with pytest.warns(CoarseSamplingWarning, match=told) if told else nullcontext():
         assert steps.softening(*arrays, 1e-5)[0] == pytest.approx(softer, rel=1e-6, abs=0.0)
+
+
+@pytest.mark.parametrize("exponent", [1.5, 10 / 9])
+def test_a_contact_becomes_as_stiff_in_impacts_as_under_64_times_its_load(exponent):
+    """dF/dδ of F = k δⁿ; Hertz's is four times as stiff there, a roller's half as much again."""
+
+    def stiffness(approach):
+        return 1e12 * exponent * approach ** (exponent - 1.0)
+
+    samples = np.array([1e-6, 2e-6])
+    law = Areal(ForceCurve.from_samples(samples, 1e12 * samples**exponent, exponent), None).prepare([0.0])
+    rest = 1.5e-6
+    found = steps.largest_values(law, stiffness(rest))
+    assert found[0] == pytest.approx(stiffness(2e-6), rel=1e-9)
+    assert found[1] == pytest.approx(stiffness(rest * 64.0 ** (1.0 / exponent)), rel=1e-9)
+
+
+@pytest.mark.parametrize("resonance", [10e3, 25e3, 40e3, 56e3, 70e3, 300e3])
+def test_a_resonance_beyond_what_is_asked_takes_fewer_steps_as_long_as_nobody_hears_it(resonance):
+    """Receptance of a mass on a spring, stepped with forces linear in between: Newmark's of β = 1/6."""
+    asked = 20e3
+    count = steps_per_resonance(resonance, asked)
+    turned = 2.0 * np.pi / count  # of the resonance in a step
+    cosine = np.cos(turned * asked / resonance)
+    mean = (cosine + 2.0) / 3.0
+    stepped = mean / (2.0 * cosine - 2.0 + turned**2 * mean)
+    exact = 1.0 / (1.0 - (asked / resonance) ** 2) / turned**2
+    assert 5.0 <= count <= steps_per_resonance(resonance, None) == 10.0
+    if count < 10.0:
+        assert abs(stepped / exact - 1.0) < 0.016 * turned**2 * exact
+    assert steps_per_resonance(resonance, 0.5 * asked) <= count
 
 
 def test_softened_contact_has_the_frequency_of_newmark():

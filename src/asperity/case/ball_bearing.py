@@ -59,7 +59,8 @@ if TYPE_CHECKING:
 SAMPLING = 2.56
 """Samples per period of the highest frequency that a record holds, as analysers have it."""
 STEPS_PER_PERIOD = 10
-"""Time steps per period of that frequency, and of a ball's resonance between the rings, at least."""
+"""Time steps per period of that frequency, and of a ball's resonance between the rings, at least: a contact
+that becomes stiffer by four under impacts would be softened by fewer."""
 MOST_STEPS = 10**8
 """Time steps of all balls: 4 GB while they roll."""
 FEWEST = 5.0
@@ -498,7 +499,7 @@ class BearingUnderLoad(Oiled, AnyCase):
 
         of, angle = self.bearing.bearing, self.static.contact_angle
         at_balls = 2.0 * np.pi / of.balls * np.arange(of.balls)
-        found = STEPS_PER_PERIOD * self.ball_resonance
+        found = self.resolving(self.ball_resonance)
         rings = zip((self.shaft, self.housing), self.bending_rings(), self.contacts, strict=True)
         for ring, bending, (contact, load) in rings:
             shapes = Ring.rigid(ring.mass, angle).shapes(at_balls)[0]
@@ -508,8 +509,12 @@ class BearingUnderLoad(Oiled, AnyCase):
                 found = max(found, PER_MODE * float(modes[modes <= HIGHEST].max(initial=0.0)))
             moved = 1.0 / of.ball_mass + np.linalg.norm(shapes, 2) ** 2
             resonance = math.sqrt(contact.tangent_stiffness(contact.approach(load)) * moved) / (2.0 * math.pi)
-            found = max(found, STEPS_PER_PERIOD * resonance)
+            found = max(found, self.resolving(resonance))
         return found
+
+    def resolving(self, resonance: float) -> float:
+        """Time steps in a second, 1/s, that a resonance of contacts, Hz, takes."""
+        return STEPS_PER_PERIOD * resonance
 
     @property
     def highest_frequency(self) -> float:

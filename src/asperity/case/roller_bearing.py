@@ -15,6 +15,7 @@ from asperity.case.speed import span_of
 from asperity.errors import InputError
 from asperity.laws import LawSpec, Need, spec_of
 from asperity.parameters import Choice, ListOf, key, keys_of, optional
+from asperity.rolling.resolution import steps_per_resonance
 from asperity.structures.roller_bearing import ROLLER_BEARINGS, RollerBearing
 from asperity.written_numbers import rounded
 
@@ -118,6 +119,10 @@ class RollerBearingUnderLoad(BearingUnderLoad):
         @property
         def contacts(self) -> tuple[tuple[SlicedContact, float], tuple[SlicedContact, float]]:  # type: ignore[override]
             """Smooth contacts of a roller with the inner and the outer ring, and their largest loads, N."""
+
+    def resolving(self, resonance: float) -> float:
+        """Time steps in a second, 1/s, that a resonance of contacts, Hz, takes: fewer beyond the record."""
+        return steps_per_resonance(resonance, self.highest_frequency) * resonance
 
     @property
     def helping_changes(self) -> NamedChanges:

@@ -48,6 +48,25 @@ class StateTexture:
         heights = (1.0 - share) * self.heights[lower] + share * self.heights[upper]
         return StateTexture.unfiltered(heights, self.spacing, self.start)
 
+    def with_fewer_states(self, share: float) -> "StateTexture":
+        """The same without states that straight lines between those kept miss by no more than a share.
+
+        That is of its largest height. A state is kept from which no line reaches further.
+        """
+        states, heights = self.approaches, self.heights
+        allowed = share * float(np.abs(heights).max(initial=0.0))
+        if np.abs(heights - heights[0]).max(initial=0.0) <= allowed:
+            return StateTexture(heights[:1], states[:1], self.start, self.spacing)
+        kept = [0]
+        for end in range(2, len(states)):
+            first = kept[-1]
+            along = ((states[first:end] - states[first]) / (states[end] - states[first]))[:, None]
+            line = (1.0 - along) * heights[first] + along * heights[end]
+            if np.abs(heights[first:end] - line).max() > allowed:
+                kept.append(end - 1)
+        kept.append(len(states) - 1)
+        return StateTexture(heights[kept], states[kept], self.start, self.spacing)
+
     def at(self, positions: ArrayLike) -> Array:
         """Texture (n, s), m, of every state at positions (n,) on the path, m, by cubic splines along it."""
         return along_path("state texture", self.heights, self.start, self.spacing, positions)

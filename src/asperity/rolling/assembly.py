@@ -31,7 +31,8 @@ def softened(
     least, thrown = ground.alternating + own, ground.thrown + own
     direct = system.own + ground.shapes**2 @ system.coefficients[3, : len(ground.natural)]
     resonances = steps.contact_resonance(stiffness, direct, least, system.time_step)[~ground.on_rail]
-    resonance = "the contact resonance", float(resonances.max(initial=0.0)), resolution.PER_RESONANCE
+    fastest = float(resonances.max(initial=0.0))
+    resonance = "the contact resonance", fastest, resolution.steps_per_resonance(fastest, highest_frequency)
     on_bay = np.sqrt(float(stiffness[ground.on_rail].max(initial=0.0)) / ground.bay) / (2.0 * np.pi)
     on_rail = "the contact resonance on a bay of rail", on_bay, resolution.PER_RESONANCE_ON_RAIL
     natural = np.concatenate([body.natural_frequencies for body in bodies])

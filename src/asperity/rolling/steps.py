@@ -251,17 +251,18 @@ def largest_values(law: Prepared | SteppedLaw, at_rest: float) -> tuple[float, f
     `at_rest` is the stiffness under the load, N/m. The stiffness in impacts is zero of a contact that never
     opens, the force where it is not known.
     """
+    if not isinstance(law, Prepared):
+        return RISE * at_rest, RISE * at_rest, 0.0
     stiffness = at_rest
     force = 0.0
-    if not isinstance(law, Prepared):
-        stiffness = RISE * at_rest
-    elif np.isfinite(law.upper):
+    if np.isfinite(law.upper):
         height = law.values.max(axis=1) if not len(law.slopes) else 0.0
         forces, slopes, _ = evaluate_all(law, law.planes + height + law.upper, 0)
         stiffness = max(at_rest, float(slopes.max()))
         force = float(forces.max())
-    opens = not (isinstance(law, Prepared) and law.bilateral)
-    return stiffness, max(stiffness, RISE * at_rest) if opens else 0.0, force
+    # a force δⁿ becomes stiffer by (load)^(1 − 1/n)
+    rise = RISE ** (3.0 * (law.exponent - 1.0) / law.exponent)
+    return stiffness, 0.0 if law.bilateral else max(stiffness, rise * at_rest), force
 
 
 def softening(

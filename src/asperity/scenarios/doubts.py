@@ -2,7 +2,7 @@
 
 import math
 
-from asperity.case.ball_bearing import STEPS_PER_PERIOD, BearingUnderLoad
+from asperity.case.ball_bearing import BearingUnderLoad
 from asperity.case.scene import Case
 from asperity.contact.batched import UNTRIED, find_device
 from asperity.contact.hertz import Hertz
@@ -100,8 +100,8 @@ def doubt_bearing(case: BearingUnderLoad) -> None:
         if roughness is not None and roughness < SMOOTHEST:
             told = "the smoothest surfaces that are made have 0.1 nm"
             _warn(f"{name}.roughness", roughness, "m", told, "nm")
-    resonance = "the resonance of the most loaded ball between the rings", case.ball_resonance
-    warn_if_coarse(case.step, [(*resonance, 0.99 * STEPS_PER_PERIOD)])
+    what, resonance = f"the resonance of the most loaded {of.ELEMENT} between the rings", case.ball_resonance
+    warn_if_coarse(case.step, [(what, resonance, 0.99 * case.resolving(resonance) / resonance)])
 
 
 def _doubt_damping(key: str, damping: float, contact: Hertz, load: float, mass: float) -> None:

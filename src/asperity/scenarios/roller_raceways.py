@@ -15,6 +15,7 @@ from asperity.arguments import Array, ArrayLike, NDArray, positive
 from asperity.contact.hertz import Hertz
 from asperity.contact.slices import EXPONENT, SlicedContact
 from asperity.reduction.stiffness import ForceCurve
+from asperity.reduction.texture import StateTexture
 from asperity.scenarios import raceway_laws, reducing
 from asperity.scenarios.geometry import HIGHEST_FORCE, Geometry
 from asperity.scenarios.raceway_laws import CELLS, CELLS_OF_FAULT, CELLS_OF_WAVE, FOLLOWED, OnRaceway
@@ -27,6 +28,8 @@ STATES = 48
 """Approaches of the force curve of a roller: closest at first touch."""
 LEAST_STATE = 1e-3
 """Least of them over the largest."""
+STRAIGHT = 1e-5
+"""Share of its largest height by which a texture between its states may lie beside itself."""
 STEPS = 30
 """Of Newton's method for the approach over a fault."""
 
@@ -208,6 +211,10 @@ class OnRollerRaceway(OnRaceway):
             covered = np.where(edges.crossed & deep, behind, covered)
             heights = np.where(edges.crossed & ~deep, -edges.drop, heights)
         return covered, heights
+
+    def _areal(self) -> StateTexture:
+        """Heights averaged under each state, of those states that no straight line replaces."""
+        return super()._areal().with_fewer_states(STRAIGHT)
 
     def _sinks(self) -> float:
         """How far a roller sinks, m, until it lies on both edges of the longest fault, or on its bottom."""
