@@ -17,6 +17,7 @@ from asperity.reduction.stiffness import ForceCurve
 from asperity.rolling.bearing import BearingRings, roll_bearing
 from asperity.scenarios.prepared_bearing import expected, prepare_bearing, raceways_of
 from asperity.scenarios.roller_raceways import OnRollerRaceway, on_surface, surface_on
+from asperity.scenes.computed_bearing import compute_bearing
 from asperity.scenes.figures.bearing import along_roller, ball_contacts_table, films_table
 from asperity.serving.contact_preview import PressedSample
 from asperity.structures.ring import Ring
@@ -164,6 +165,16 @@ def test_a_run_with_oil_tells_the_films_of_its_rollers(oiled):
     rows = dict(expected(prepare_bearing(case))[0])
     assert rows["not in it"] == RollerBearing.LEFT_OUT_OILED
     assert "µm at least; Λ" in next(told for name, told in rows.items() if name.startswith("film, outer"))
+
+
+@pytest.mark.parametrize("changes", [{}, {"lubricant": {"oil": "ISO VG 68"}}])
+def test_with_the_step_that_is_chosen_no_contact_is_softened(changes):
+    """Five steps in a period at 70 kHz: a contact of slices is a half stiffer in impacts, not four times."""
+    short = {"duration": "15 ms", "settling": "1 ms", "time_step": None, "speed": "12000 1/min"}
+    case = as_case(CASE | short | changes)
+    assert 4.0 < 1.0 / (case.step * case.ball_resonance) < 6.0
+    (run,) = compute_bearing(prepare_bearing(case), lambda *_: None).runs.values()
+    assert not run.softening.any()
 
 
 @pytest.fixture(scope="module")

@@ -127,7 +127,7 @@ class WithFilm:
         forces = self.load * np.geomspace(LIGHTEST, HEAVIEST, KNOTS)
         bodies = dry.inverse(forces)
         stiffness = 1.0 / (1.0 / dry.stiffness(bodies) + self._yielding(forces))
-        found = ForceCurve.from_samples(bodies - self.thickness(forces), forces, stiffness=stiffness)
+        found = ForceCurve.from_samples(bodies - self.thickness(forces), forces, dry.exponent, stiffness)
         beyond = dry.upper - self.film.central(self.load)
         return ForceCurve(found.knots, found.coefficients, found.exponent, beyond)
 
