@@ -64,6 +64,12 @@ def test_velocities_of_a_sine_in_each_band():
     np.testing.assert_allclose(band_velocities(velocity, rate), expected, rtol=1e-4)
     np.testing.assert_allclose(band_velocities(rising, rate, quantity="acceleration"), expected, rtol=1e-3)
     assert np.isnan(band_velocities(velocity[::4], 12_000.0)).tolist() == [False, False, True]
+
+
+def test_a_record_in_which_nothing_moves_has_no_velocity_in_bands():
+    still = np.full(4096, 0.3)
+    np.testing.assert_array_equal(band_velocities(still, 24_000.0, quantity="acceleration"), 0.0)
+    assert np.isnan(band_deviations(still, 24_000.0)).all()
     assert ISO_BANDS[0] == (50.0, 300.0)
 
 

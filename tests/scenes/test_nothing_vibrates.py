@@ -41,6 +41,17 @@ def test_rounding_is_told_as_nothing_in_verdict_page_and_result(keys, said):
     assert said in shown
 
 
+@pytest.mark.filterwarnings("ignore::asperity.errors.PhysicsWarning")
+def test_perfect_surfaces_of_a_bearing_with_waves_under_an_axial_load_have_no_velocity():
+    tree = run(as_case(PERFECT | {"inner_raceway": {"waviness": "0.2 um"}}))
+    found = tree["bearing"].dataset
+    assert found["source"].values[0] == "perfect surfaces"
+    perfect, waves = found["alone_velocity"].values[:, :2]  # the record is not sampled finely enough for more
+    np.testing.assert_array_equal(perfect, 0.0)
+    assert (waves > 0.0).all()
+    assert np.isnan(found["alone_velocity_deviation"].values[0]).all()
+
+
 def test_a_force_that_varies_is_none_of_these(runs):
     tree = runs(small_cases.changed("ball-on-beam"))
     assert "nothing vibrates" not in tree.attrs["verdict"]

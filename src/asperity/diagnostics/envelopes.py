@@ -18,11 +18,14 @@ others."""
 Spectrum = tuple[Array, Array]
 
 
-def checked_signal(signal: ArrayLike, rate: float) -> tuple[Array, float]:
-    """A signal (n,) without its mean, and its sampling rate, Hz, or what is wrong with either."""
+def checked_signal(signal: ArrayLike, rate: float, *, still: bool = False) -> tuple[Array, float]:
+    """A signal (n,) without its mean, and its sampling rate, Hz, or what is wrong with either.
+
+    One that is the same throughout is allowed where it may be ``still``.
+    """
     values = finite_array("signal", signal, "a series of finite numbers", shape=(None,))
     require(values.size >= 64, "signal", count_of(values.size, "sample"), "at least 64")
-    require(np.ptp(values) > 0.0, "signal", "the same number throughout", "a signal that varies")
+    require(still or np.ptp(values) > 0.0, "signal", "the same number throughout", "a signal that varies")
     return values - values.mean(), positive("sampling rate (Hz)", rate)
 
 
@@ -215,14 +218,14 @@ def band_velocities(
     Returns
     -------
     ndarray (bands,)
-        m/s; NaN where the sampling does not reach the upper edge.
+        m/s, none of a signal that does not vary; NaN where the sampling does not reach the upper edge.
 
     Notes
     -----
     ISO 15242-2: the outer ring, radially, at 1800 1/min of the inner one under an axial load. Its bands have
     slopes at their edges; these end there.
     """
-    values, rate = checked_signal(signal, rate)
+    values, rate = checked_signal(signal, rate, still=True)
     one_of("quantity", quantity, ("velocity", "acceleration"))
     frequency, density = psd(values, 1.0 / rate)
     if quantity == "acceleration":
@@ -256,9 +259,10 @@ def band_deviations(
     Returns
     -------
     ndarray (bands,)
-        NaN where the sampling does not reach the upper edge, or the record is too short for the band.
+        NaN where the sampling does not reach the upper edge, the record is too short for the band, or
+        nothing varies.
     """
-    values, rate = checked_signal(acceleration, rate)
+    values, rate = checked_signal(acceleration, rate, still=True)
     spectrum = fft.rfft(values - values.mean())
     frequency = fft.rfftfreq(len(values), 1.0 / rate)
     velocity = spectrum / (2j * np.pi * np.maximum(frequency, frequency[1]))
@@ -267,7 +271,7 @@ def band_deviations(
         within = (frequency >= low) & (frequency < high)
         squares = fft.irfft(velocity * within, len(values)) ** 2
         means = squares[: len(values) // PARTS * PARTS].reshape(PARTS, -1).mean(axis=1)
-        if high <= 0.5 * rate and within.any():
+        if high <= 0.5 * rate and within.any() and squares.any():
             # the rms varies by half of what its square does
             found[n] = 0.5 * means.std(ddof=1) / math.sqrt(PARTS) / means.mean()
     return found

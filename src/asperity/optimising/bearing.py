@@ -411,12 +411,7 @@ def _accelerations(case: BearingUnderLoad, aim: BearingAim, progress: Progress) 
 
 def _velocities(case: BearingUnderLoad, acceleration: Array) -> Array:
     """Velocities in the bands of ISO 15242 (3,), m/s, rms over the sensors."""
-    reached = [high <= 0.5 * case.sampling_rate for _, high in ISO_BANDS]
-    still = np.where(reached, 0.0, np.nan)  # nothing vibrates where all balls are carried alike
-    judged = [
-        band_velocities(each, case.sampling_rate, quantity="acceleration") if np.ptp(each) else still
-        for each in acceleration
-    ]
+    judged = [band_velocities(each, case.sampling_rate, quantity="acceleration") for each in acceleration]
     return np.sqrt(np.mean(np.square(judged), axis=0))
 
 

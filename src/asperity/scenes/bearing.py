@@ -14,7 +14,7 @@ import xarray
 from asperity import diagnostics
 from asperity.arguments import Array
 from asperity.case.ball_bearing import BearingUnderLoad
-from asperity.diagnostics import ISO_BANDS, LineFamily, Spectrum, band_velocities
+from asperity.diagnostics import ISO_BANDS, LineFamily, Spectrum, band_deviations, band_velocities
 from asperity.diagnostics.orders import envelope_order_spectrum
 from asperity.errors import PhysicsWarning, percent, warn_of_findings
 from asperity.progress import Progress
@@ -30,7 +30,6 @@ from asperity.scenarios.prepared_bearing import (
     prepare_bearing,
 )
 from asperity.scenes.bearing_at_rest import DIRECTIONS
-from asperity.scenes.bearing_levels import deviations
 from asperity.scenes.bearing_validity import bearing_findings
 from asperity.scenes.computed_bearing import ComputedBearing, compute_bearing
 from asperity.scenes.figures.sources import loudest
@@ -267,7 +266,7 @@ def alone(prepared: PreparedBearing, progress: Progress) -> Values:
             (run,) = compute_bearing(prepare_bearing(others), progress).runs.values()
         signal = run.acceleration[0] * run.vibrates
         found.append(band_velocities(signal, case.sampling_rate, quantity="acceleration"))
-        by_chance.append(deviations(signal, case.sampling_rate))
+        by_chance.append(band_deviations(signal, case.sampling_rate))
     return {
         bearing.SOURCE: names,
         bearing.ALONE_VELOCITY: bearing.ALONE_VELOCITY.variable(np.array(found), law=BY_PARTS),

@@ -1,9 +1,6 @@
 """Levels of a bearing in one-third octaves, as of any scene, and how sure its velocities in bands are."""
 
-import numpy as np
-
-from asperity.arguments import Array
-from asperity.diagnostics import ISO_BANDS, band_deviations
+from asperity.diagnostics import band_deviations
 from asperity.scenes.computed_bearing import ComputedBearing
 from asperity.scenes.observer import Observer
 from asperity.scenes.schema import ACCELERATION_REFERENCE
@@ -34,14 +31,10 @@ def levels_group(computed: ComputedBearing) -> Values:
         bearing.SPECTRA_SENSOR: case.sensors,
         bearing.ACCELERATION_LEVEL: computed.levels(accelerations, ACCELERATION_REFERENCE),
         bearing.BAND_DEVIATION: [
-            [deviations(signal, case.sampling_rate) for signal in run.acceleration] for run in runs.values()
+            [band_deviations(signal, case.sampling_rate) for signal in run.acceleration]
+            for run in runs.values()
         ],
     }
-
-
-def deviations(signal: Array, rate: float) -> Array:
-    """How sure velocities in bands are; nothing of what does not vary."""
-    return band_deviations(signal, rate) if np.ptp(signal) > 0.0 else np.full(len(ISO_BANDS), np.nan)
 
 
 OBSERVER = Observer(
