@@ -9,7 +9,9 @@ from numpy.testing import assert_allclose, assert_array_equal
 from asperity.laws import HertzLaw, Linear
 from asperity.reduction.texture import StateTexture
 from asperity.rolling.bearing import BearingRings, roll_bearing
+from asperity.speeds import SpeedCourse
 from asperity.structures.ball_bearing import BallBearing
+from asperity.structures.modal import Modal
 from asperity.structures.ring import Ring
 from one_contact import Shelf
 from refusals import refusals
@@ -56,6 +58,28 @@ def test_it_starts_as_the_static_solution_and_carries_the_load():
     assert run.inner_motion[0].mean() == pytest.approx(still.displacement[:, 0].mean(), rel=0.01)
     assert run.energy.residual < 1e-7
     assert run.unconverged_steps == 0
+
+
+def test_shapes_that_follow_one_another_are_those_at_every_angle(monkeypatch):
+    """Where the cage never slips and the speed is one; else every shape is computed for itself."""
+    asked = []
+    one_by_one = Modal.shapes_along
+
+    def counted(ring, start, spacing, count):
+        asked.append(spacing)
+        return one_by_one(ring, start, spacing, count)
+
+    keys = {"rotating": 20.0, "duration": 2e-3, "settling": 1e-3}
+    even = turned_by(**keys)
+    monkeypatch.setattr(Ring, "shapes_along", counted)
+    assert_allclose(even.inner_force, turned_by(**keys).inner_force, rtol=1e-9)
+    assert asked
+    asked.clear()
+    slipping = turned_by(**keys | {"rotating": 0.0}, slip=lambda time: 0.01 * np.cos(1e3 * time))
+    assert not asked
+    assert np.abs(slipping.inner_force - even.inner_force).max() > 1e-3
+    turned_by(**keys | {"speed": SpeedCourse([0.0, 1e-3], [25.0, 30.0])})
+    assert not asked
 
 
 def test_centrifugal_force_presses_the_outer_raceway_alone():

@@ -10,7 +10,7 @@ from asperity.errors import ExtrapolationWarning, LargeDeflectionWarning
 from asperity.laws import HertzLaw, Linear, Printed
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.texture import StateTexture
-from asperity.rolling.course import Course
+from asperity.rolling.course import Course, laid_out, laid_together
 from asperity.rolling.driver import roll_mechanism
 from asperity.rolling.mechanism import Mechanism, RollingContact, Side
 from asperity.rolling.roll import roll_bodies
@@ -129,6 +129,37 @@ def test_what_swings_along_a_slope_works_on_it_at_the_rate_that_is_given():
     slope = run.energy.shares["slope of the structure"]
     assert abs(slope) > 0.01 * run.energy.throughput
     assert run.energy.residual < 1e-6
+
+
+def test_a_law_that_contacts_share_is_laid_out_once_as_for_each_of_them():
+    asked = []
+
+    class Counted(Printed):
+        def prepare(self, positions):
+            asked.append(len(positions))
+            return super().prepare(positions)
+
+    heights = 1e-7 * np.random.default_rng(3).normal(size=(2, 400))
+    texture = StateTexture(heights, np.array([0.0, 1e-6]), -0.1, 1e-3)
+    curve = ForceCurve.hertz(1e10)
+    shared, other = Counted(curve, texture, 0.0), HertzLaw(1e10)
+    raising = [
+        None,
+        lambda steps: 1e-8 * np.arange(len(steps)),
+        None,
+        lambda steps: np.full(len(steps), 3e-8),
+    ]
+    contacts = [
+        RollingContact(law, lambda steps, k=k: 1e-3 * np.asarray(steps) + 0.01 * k, heights=raised)
+        for k, (law, raised) in enumerate(zip([shared, shared, other, shared], raising, strict=True))
+    ]
+    steps = range(3, 60)
+    together = laid_together(contacts, steps)
+    assert asked == [3 * len(steps)]
+    for found, contact in zip(together, contacts, strict=True):
+        expected = laid_out(contact, steps)
+        for name, value in expected._asdict().items():
+            assert_allclose(getattr(found, name), value, rtol=1e-11, atol=1e-20, err_msg=name)
 
 
 def test_a_structure_that_bends_far_is_warned_of():

@@ -306,6 +306,17 @@ def test_a_rigid_ring_moves_as_a_mass_on_its_springs():
     assert ring.pressed(3.0, 5.0) * np.sqrt(2.0) == pytest.approx([3.0, 0.0, 5.0])
 
 
+@pytest.mark.parametrize("ring", [
+    Ring.rigid(2.0, 0.4, radial_stiffness=8e6, axial_stiffness=2e6),
+    Ring.bending(MASS, RADIUS, STIFFNESS, 0.3, most_lobes=4, damping_ratio=0.01),
+])  # fmt: skip
+@pytest.mark.parametrize(("start", "spacing"), [(-40.0, 3e-4), (1.0, -2e-2), (700.0, 0.7)])
+def test_shapes_at_angles_that_are_evenly_apart_are_the_shapes(ring, start, spacing):
+    along = ring.shapes_along(start, spacing, 300)
+    for found, expected in zip(along, ring.shapes(start + spacing * np.arange(300)), strict=True):
+        np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-11 * np.abs(expected).max())
+
+
 def around(angles, shapes):
     return Around(ModalStructure(angles, np.full(shapes.shape[1], 900.0), 0.01, shapes), 0.3)
 

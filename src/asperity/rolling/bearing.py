@@ -290,7 +290,8 @@ class _Turning:
         def rates(steps: range) -> Array:
             return at_steps(self._rate, steps) - turned * self._share(steps)
 
-        return Trajectory(places, rates)
+        even = bool(np.all(self._rate == self._rate[0])) and not isinstance(self.speed, SpeedCourse)
+        return Trajectory(places, rates, self.time_step * (self._rate[0] - turned) if even else None)
 
     def on_raceway(self, ball: int, ring: int) -> Values:
         """Position of a ball along a raceway, m, from 0 to its circumference."""
@@ -360,10 +361,13 @@ class _Turning:
         """
         ring = RINGS.index(self.bearing.turning)
         rate, half = TURN * self.turns[ring], 0.5 * force / math.cos(self.contact_angle)
+        spacing = None if isinstance(self.speed, SpeedCourse) else rate * self.time_step
 
         def at(angle: float) -> Trajectory:
             return Trajectory(
-                lambda steps: rate * self._time(steps) + angle, lambda steps: rate * self._share(steps)
+                lambda steps: rate * self._time(steps) + angle,
+                lambda steps: rate * self._share(steps),
+                spacing,
             )
 
         return [

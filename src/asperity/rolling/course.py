@@ -100,15 +100,15 @@ class Course:
 
     def pieces(self, steps: range) -> list[Any]:
         """Laws of all contacts at some steps."""
-        return [self.piece(k, steps) for k in range(self.contacts)]
+        if self.everywhere:
+            return [self.piece(k, steps) for k in range(self.contacts)]
+        return laid_together(self.mechanism.contacts, steps)
 
     def piece(self, k: int, steps: range) -> Any:
         """That of one contact."""
         if not self.everywhere:
             return laid_out(self.mechanism.contacts[k], steps)
-        law = self.everywhere[k]
-        rows = {name: at_steps(getattr(law, name), steps) for name in ALONG}
-        return law._replace(**rows)
+        return _at_rows(self.everywhere[k], steps)
 
     def laid(self, steps: range) -> Any:
         """Laws at some steps, as `asperity.kernels.stepping.solve_prepared` takes them."""
@@ -146,7 +146,31 @@ def _seen_along(structure: Modal, trajectory: Trajectory, steps: range) -> tuple
 
 def laid_out(contact: RollingContact, steps: range) -> Any:
     """The law of a contact, `Prepared` or a `SteppedLaw`, whose textures are raised by its heights."""
-    law = contact.law.prepare(contact.positions(steps))
+    return _at_height(contact, contact.law.prepare(contact.positions(steps)), steps)
+
+
+def laid_together(contacts: Sequence[RollingContact], steps: range) -> list[Prepared]:
+    """As `laid_out`, of contacts with compiled laws: one that several have is laid out once, for all."""
+    alike: dict[int, list[int]] = {}
+    for k, contact in enumerate(contacts):
+        alike.setdefault(id(contact.law), []).append(k)
+    found = {}
+    for members in alike.values():
+        along = np.concatenate([contacts[k].positions(steps) for k in members])
+        law: Any = contacts[members[0]].law.prepare(along)
+        for i, k in enumerate(members):
+            own = _at_rows(law, range(i * len(steps), (i + 1) * len(steps)))
+            found[k] = _at_height(contacts[k], own, steps)
+    return [found[k] for k in range(len(contacts))]
+
+
+def _at_rows(law: Prepared, rows: range) -> Prepared:
+    along: dict[str, Any] = {name: at_steps(getattr(law, name), rows) for name in ALONG}
+    return law._replace(**along)
+
+
+def _at_height(contact: RollingContact, law: Any, steps: range) -> Any:
+    """A law on the positions of a contact at some steps, as it is where bodies are closer by its heights."""
     if contact.heights is None:
         return law
     heights = contact.heights(steps)

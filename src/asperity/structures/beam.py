@@ -13,9 +13,9 @@ from numpy.polynomial.legendre import leggauss
 
 from asperity.arguments import Array, ArrayLike, one_of, positive, real, require
 from asperity.errors import InputError
-from asperity.kernels.curves import STRIDE, add_near_fields, turn_on
+from asperity.kernels.curves import STRIDE, add_near_fields
 from asperity.reference.materials import Material
-from asperity.structures.modal import Modal, Pieces, modal_receptance, pieces_of, shapes_at
+from asperity.structures.modal import Modal, Pieces, modal_receptance, pieces_of, shapes_at, turned_on
 from asperity.written_numbers import rounded
 
 SUPPORTS = ("simply-supported", "free", "clamped")
@@ -222,13 +222,10 @@ class Beam(_Uniform):
         """
         k = self._wavenumbers
         (wave, rising, falling), slope = self._parts(start + spacing * np.arange(0, count, STRIDE))
-        shapes, slopes = np.empty((2, count, len(k)))
-        angle = k * spacing
-        sine_over_k = spacing * np.sinc(angle / np.pi)  # the limit of k = 0 moves rigid modes
-        turn = np.array([2.0 * np.sin(0.5 * angle) ** 2, sine_over_k, k * np.sin(angle)])
-        turn_on(wave, slope, turn, shapes, slopes)
+        shapes, slopes = turned_on(wave, slope, k, spacing, count)
         if self.support != "simply-supported":
             near = np.array([rising, falling])
+            angle = k * spacing
             add_near_fields(near, np.array([np.exp(angle), np.exp(-angle), k]), shapes, slopes)
         return shapes, slopes
 

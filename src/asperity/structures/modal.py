@@ -11,7 +11,7 @@ import scipy
 
 from asperity.arguments import Array, ArrayLike, Complex, finite_array, positive, real, real_array, require
 from asperity.errors import CoarseSamplingWarning, InputError
-from asperity.kernels.curves import evaluate_pieces
+from asperity.kernels.curves import evaluate_pieces, turn_on
 from asperity.written_numbers import count_of, rounded
 
 
@@ -40,6 +40,21 @@ class Modal(Protocol):
     def shapes_along(self, start: float, spacing: float, count: int) -> tuple[Array, Array]:
         """As `shapes`, at equally spaced positions."""
         return self.shapes(start + spacing * np.arange(count))
+
+
+def turned_on(
+    wave: Array, slope: Array, wavenumbers: Array, spacing: float, count: int
+) -> tuple[Array, Array]:
+    """Sinusoidal mode shapes and slopes (count, m) at places a spacing apart, by angle addition.
+
+    From exact values (k, m) at every `STRIDE` places; wavenumbers (m,) are 0 of what moves evenly.
+    """
+    shapes, slopes = np.empty((2, count, len(wavenumbers)))
+    angle = wavenumbers * spacing
+    sine_over_k = spacing * np.sinc(angle / np.pi)  # the limit of k = 0 moves rigid modes
+    turn = np.array([2.0 * np.sin(0.5 * angle) ** 2, sine_over_k, wavenumbers * np.sin(angle)])
+    turn_on(wave, slope, turn, shapes, slopes)
+    return shapes, slopes
 
 
 def modal_receptance(structure: Modal, frequency: ArrayLike, x: float, x0: float) -> Complex:

@@ -7,7 +7,8 @@ from typing import Literal
 import numpy as np
 
 from asperity.arguments import Array, ArrayLike, not_negative, one_of, positive, real, require, whole
-from asperity.structures.modal import Modal
+from asperity.kernels.curves import STRIDE
+from asperity.structures.modal import Modal, turned_on
 from asperity.written_numbers import rounded
 
 Direction = Literal["radial", "axial"]
@@ -163,6 +164,11 @@ class Ring(Modal):
         angle = np.multiply.outer(np.asarray(x, dtype=float), self.lobes) - self.phases
         size = math.cos(self.contact_angle) * self.radial + math.sin(self.contact_angle) * self.axial
         return size * np.cos(angle), -self.lobes * size * np.sin(angle)
+
+    def shapes_along(self, start: float, spacing: float, count: int) -> tuple[Array, Array]:
+        """As `shapes`, at so many angles that are equally spaced, to rounding and many times faster."""
+        exact = self.shapes(start + spacing * np.arange(0, count, STRIDE))
+        return turned_on(*exact, self.lobes, spacing, count)
 
     def towards(self, angle: float, direction: Direction = "radial") -> Array:
         """Motion of a place for each mode (m,), kg^(−1/2): outwards at an angle, rad, or axially."""
