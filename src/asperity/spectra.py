@@ -346,7 +346,7 @@ def _covered_centres(lines: Array, step: float) -> tuple[float, float]:
 def level_of(energies: ArrayLike) -> Array:
     """Levels of energies over that of their reference, dB; minus infinity where there is none."""
     with np.errstate(divide="ignore"):
-        return np.asarray(10.0 * np.log10(energies))
+        return 10.0 * np.log10(energies)
 
 
 def energy_sum(levels: ArrayLike, axis: int = -1) -> Array:

@@ -71,7 +71,7 @@ class SpeedCourse(float):
 
     def at(self, time: ArrayLike) -> Array:
         """Speeds at some times, s."""
-        return np.asarray(np.interp(np.asarray(time, dtype=float), self.times, self.speeds))
+        return np.interp(np.asarray(time, dtype=float), self.times, self.speeds)
 
     def covered(self, time: ArrayLike) -> Array:
         """How far it has brought something since time zero, m or turns: the integral of the speed."""
@@ -84,7 +84,7 @@ class SpeedCourse(float):
         since = t - times[k]
         steady = (t < 0.0) | (k == len(times) - 1)
         rise = np.append(np.diff(held) / np.maximum(np.diff(times), np.finfo(float).tiny), 0.0)
-        return np.asarray(done[k] + since * (held[k] + np.where(steady, 0.0, 0.5 * rise[k] * since)))
+        return done[k] + since * (held[k] + np.where(steady, 0.0, 0.5 * rise[k] * since))
 
     def reached(self, distance: float) -> float:
         """When it has brought something so far from where it was at time zero, s."""

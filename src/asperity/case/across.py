@@ -118,7 +118,7 @@ def _away_from_rest(y: Array, z: Array) -> Array:
     up = np.subtract.outer(z[some], z[some])
     np.fill_diagonal(across, np.nan)
     slope = float(np.median(np.nanmedian(up / across, axis=1)))
-    return np.asarray(z - slope * y - np.median(z[some] - slope * y[some]))
+    return z - slope * y - np.median(z[some] - slope * y[some])
 
 
 def flange_of(y: Array, z: Array) -> tuple[int, int]:
@@ -242,7 +242,7 @@ class Meeting:
         return gaps[:-1] - gaps[-1]
 
     def _gap(self, y: ArrayLike) -> Array:
-        return np.asarray(self.tread.section(y)[..., 0] + self.head.section(y)[..., 0])
+        return self.tread.section(y)[..., 0] + self.head.section(y)[..., 0]
 
     def osculating(self, hertz: Hertz, load: float) -> Hertz | None:
         """Contact of the parabola through the gap over its own width, under a load, N; None where it is none.

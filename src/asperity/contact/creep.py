@@ -229,7 +229,7 @@ class CreepCurve:
     @property
     def slopes(self) -> Array:
         """Force of each contact over the linear theory's at the smallest creepage, (1 + samples,)."""
-        return np.asarray(self.force[:, 0] / self.linear[0])
+        return self.force[:, 0] / self.linear[0]
 
 
 def creep_curve(
@@ -391,7 +391,7 @@ class CreepingBodies:
 
         That of `SlidingContact.dissipated_power`, of like bodies; unlike ones slip by their pressure, too.
         """
-        return np.asarray(-self.speed * np.tensordot(self.creepage, forces, axes=1))
+        return -self.speed * np.tensordot(self.creepage, forces, axes=1)
 
     @cached_property
     def full_slip_load(self) -> float:

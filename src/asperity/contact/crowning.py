@@ -133,9 +133,9 @@ class Crowning:
             return np.zeros_like(x)
         if self.form == "logarithmic":
             with np.errstate(divide="ignore"):
-                return np.asarray(self.drop * -np.log1p(-np.minimum((x / half) ** 2, 1.0)))
+                return self.drop * -np.log1p(-np.minimum((x / half) ** 2, 1.0))
         curved = half - 0.5 * self.straight
         radius = 0.5 * (curved**2 + self.drop**2) / self.drop
         along = np.clip(x - 0.5 * self.straight, 0.0, curved)
         # R − √(R² − x²), without taking near numbers from each other
-        return np.asarray(along**2 / (radius + np.sqrt(radius**2 - along**2)))
+        return along**2 / (radius + np.sqrt(radius**2 - along**2))

@@ -91,7 +91,7 @@ class Softness(NamedTuple):
 
     def sunk(self, pressure: Array) -> Array:
         """By how much cells sink more than others under a pressure, Pa; m."""
-        return np.asarray(sunk(self.softness, self.drop, self.flow, self.yielding, pressure, np))
+        return sunk(self.softness, self.drop, self.flow, self.yielding, pressure, np)
 
     def compliance(self, pressure: Array) -> Array:
         """Derivative of what cells sink by the pressure, m/Pa."""

@@ -45,7 +45,7 @@ def conformal_creepage(across: ArrayLike, half_axis: ArrayLike, curvature: float
         lines of pure rolling at y₀ = `PURE_ROLLING` a: the middle of a ball runs ahead, its sides lag.
     """
     y, a = np.broadcast_arrays(np.asarray(across, dtype=float), np.asarray(half_axis, dtype=float))
-    return np.asarray(((PURE_ROLLING * a) ** 2 - y**2) * curvature / (2.0 * along))
+    return ((PURE_ROLLING * a) ** 2 - y**2) * curvature / (2.0 * along)
 
 
 def spin_moment(load: ArrayLike, half_axes: tuple[ArrayLike, ArrayLike]) -> Array:
@@ -67,7 +67,7 @@ def spin_moment(load: ArrayLike, half_axes: tuple[ArrayLike, ArrayLike]) -> Arra
 
     b, a = np.sort(np.broadcast_arrays(*half_axes), axis=0)
     slender = 1.0 - (b / np.where(a > 0.0, a, 1.0)) ** 2
-    return np.asarray(0.375 * np.asarray(load, dtype=float) * a * ellipe(slender))
+    return 0.375 * np.asarray(load, dtype=float) * a * ellipe(slender)
 
 
 def sliding_speed(
@@ -107,4 +107,4 @@ def sliding_speed(
     y = a[..., None, None] * radius * np.sin(around)
     lengthwise = conformal_creepage(y, a[..., None, None], curvature, along) - phi[..., None, None] * y
     slip = np.hypot(lengthwise, phi[..., None, None] * x).mean(axis=-1)
-    return np.asarray(3.0 * Q * (slip @ (weights * depth**2)))
+    return 3.0 * Q * (slip @ (weights * depth**2))

@@ -156,7 +156,7 @@ class HalfSpace:
             Displacement, m; of a period without its mean.
         """
         p, spectrum = self._field("pressure", pressure), padded_spectrum(self.influence.table, *self.shape)
-        return np.asarray(convolve_padded(p[None], spectrum, np)[0]) - self.lift * p.sum()
+        return convolve_padded(p[None], spectrum, np)[0] - self.lift * p.sum()
 
     def tangent_stiffness(self, pressure: ArrayLike, rtol: float = 1e-9, edges: Edges | None = None) -> float:
         """Tangent stiffness dF/dδ of a contact whose pressure is known, N/m.
@@ -217,12 +217,10 @@ class HalfSpace:
                 + along * (p[2:, 1:-1] - p[:-2, 1:-1])
                 + across * (p[1:-1, 2:] - p[1:-1, :-2])
             )
-            return np.asarray((self.displacement(field) - gap).flat[inside])
+            return (self.displacement(field) - gap).flat[inside]
 
         def preconditioned(values: Array) -> Array:
-            return np.asarray(
-                (softer * apply_stencil((softer * spread(values))[None], taps, np)[0]).flat[inside]
-            )
+            return (softer * apply_stencil((softer * spread(values))[None], taps, np)[0]).flat[inside]
 
         size = (len(inside), len(inside))
         operator = LinearOperator(size, displaced, dtype=np.float64)

@@ -280,7 +280,7 @@ def groove_gap(across: ArrayLike, radius: float, groove_radius: float) -> Array:
     # r − ρ with ρ = e cos θ + √(R² − e² sin² θ), without taking near numbers from each other
     sine = offset * np.sin(angle)
     chord = sine**2 / (radius + np.sqrt(radius**2 - sine**2))
-    return np.asarray(2.0 * offset * np.sin(0.5 * angle) ** 2 + chord)
+    return 2.0 * offset * np.sin(0.5 * angle) ** 2 + chord
 
 
 def check_half_space(

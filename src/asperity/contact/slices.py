@@ -99,7 +99,7 @@ class SlicedContact:
     @cached_property
     def places(self) -> Array:
         """Middles of the slices from that of the roller (n,), m."""
-        return np.asarray(self.length * ((np.arange(self.slices) + 0.5) / self.slices - 0.5))
+        return self.length * ((np.arange(self.slices) + 0.5) / self.slices - 0.5)
 
     @cached_property
     def drops(self) -> Array:
@@ -233,7 +233,7 @@ class SlicedContact:
         """
         width = self.length / self.slices
         per_width = np.asarray(loads, dtype=float) * self.modulus / (math.pi * self.radius * width)
-        return np.asarray(np.sqrt(per_width))
+        return np.sqrt(per_width)
 
     def peak_pressure(self, approach: float) -> float:
         """Largest pressure without tilt at an approach, Pa.

@@ -360,7 +360,7 @@ class FrictionalHalfSpace:
 
         def stretched(force: Array) -> Array:
             share = min(float(np.linalg.norm(force)) / found.limit, 1.0 - 1e-12)
-            return np.asarray(force * (-math.log1p(-share) / share if share else 1.0))
+            return force * (-math.log1p(-share) / share if share else 1.0)
 
         motion = np.array(found.creepage)
         softness = self._influence(*manner.kernel)[2] / (manner.step * normal.area)
@@ -478,4 +478,4 @@ def _convolved(spread: Complex, values: NDArray[Any]) -> Complex:
     """Values (nx, ny) convolved with a kernel whose origin is in its middle."""
     from scipy.signal import fftconvolve
 
-    return np.asarray(fftconvolve(spread, values, mode="valid"))
+    return fftconvolve(spread, values, mode="valid")

@@ -157,7 +157,7 @@ def above_frequency(values: Array, rate: float, lowest: float) -> Array:
 
     lines = rfft(values)
     lines[: int(lowest * values.size / rate)] = 0.0
-    return np.asarray(irfft(lines, values.size))
+    return irfft(lines, values.size)
 
 
 def prewhitened(signal: ArrayLike, rate: float) -> Array:

@@ -284,4 +284,4 @@ class BearingRecord:
 def _less_largest(terms: Array) -> Array:
     """Sums (n,) of values (n, k) without the largest of each row; what is not known counts nothing."""
     known: Array = np.sort(np.nan_to_num(terms, nan=0.0), axis=-1)
-    return np.asarray(known[:, :-1].sum(axis=-1))
+    return known[:, :-1].sum(axis=-1)

@@ -72,9 +72,7 @@ def turns_of_pulses(pulses: ArrayLike, per_turn: float = 1.0) -> Array:
     received = f"pulses {rounded(factor, 3)} times as far apart as the next, near sample {at[worst + 1]:.0f}"
     require(factor < UNEVEN, "tacho", received, f"less than {UNEVEN:g} times", "Is one missing, or doubled?")
     count = np.arange(values.size)
-    turns = np.asarray(
-        PchipInterpolator(at, np.arange(len(at)) / positive("pulses in a turn", per_turn))(count)
-    )
+    turns = PchipInterpolator(at, np.arange(len(at)) / positive("pulses in a turn", per_turn))(count)
     return np.where((count >= at[0]) & (count <= at[-1]), turns, np.nan)
 
 
@@ -107,7 +105,7 @@ def over_angle(signal: ArrayLike, turns: ArrayLike, *, per_turn: float | None = 
     require(whole >= FEWEST_TURNS, "turns", f"{rounded(whole)} of the record", f"{FEWEST_TURNS:g} at least")
     per_turn = finest(angle) if per_turn is None else positive("values in a turn", per_turn)
     at = angle[0] + np.arange(int(whole * per_turn) + 1) / per_turn
-    return np.asarray(make_interp_spline(angle, values, k=3)(at)), per_turn
+    return make_interp_spline(angle, values, k=3)(at), per_turn
 
 
 def finest(turns: Array) -> float:

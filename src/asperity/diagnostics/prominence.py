@@ -38,7 +38,7 @@ def _as_of_one(ratio: Array, means: int) -> Array:
     if means == 1:
         return ratio
     chance = gammaincc(means, ratio**2 * gammainccinv(means, 0.5))
-    return np.asarray(np.sqrt(-np.log2(np.maximum(chance, 1e-300))))
+    return np.sqrt(-np.log2(np.maximum(chance, 1e-300)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,7 +123,7 @@ class Prominence:
     def standardised(self, frequency: Array, highest: float) -> Array:
         """What `at` finds, by the median and deviation of all places up to a highest one."""
         around = self.log_ratio[LOWEST_PLACE : max(int(highest / self.step), LOWEST_PLACE + 8)]
-        return np.asarray((self.at(frequency) - np.median(around)) / max(float(around.std()), 1e-3))
+        return (self.at(frequency) - np.median(around)) / max(float(around.std()), 1e-3)
 
     def combs(self, fundamental: Array, least: float = STANDS_OUT) -> Array:
         """How clearly there is a comb of each fundamental (g,), Hz: 0, or the mean logarithm over harmonics.

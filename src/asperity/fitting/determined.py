@@ -117,10 +117,10 @@ def covariance(slopes: Array, spread: Spread) -> Array:
     """Covariance (p, p) of values whose residuals have such slopes (n, p), on the scale of the search."""
     _, sizes, directions = np.linalg.svd(slopes, full_matrices=False)
     scaled = directions.T / sizes
-    return np.asarray(spread.scale**2 * scaled @ scaled.T)
+    return spread.scale**2 * scaled @ scaled.T
 
 
 def correlations(found: Array) -> Array:
     """Correlations (p, p) of a covariance."""
     deviation = np.sqrt(np.diag(found))
-    return np.asarray(found / np.outer(deviation, deviation))
+    return found / np.outer(deviation, deviation)

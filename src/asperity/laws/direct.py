@@ -290,10 +290,10 @@ class DirectOnPath:
             will_be = self.law.sound[low + 1 : low + 1 + count]
             sound = np.where(was & will_be, found, np.maximum(before, after))
             found = np.where(edges.sound, sound, np.where(was | will_be, np.minimum(before, after), found))
-        return np.asarray(rows + found)
+        return rows + found
 
     def _between(self, offset: float) -> Array:
-        return np.asarray(self.law.between_rows(offset + np.arange(self.law.body.shape[0])))
+        return self.law.between_rows(offset + np.arange(self.law.body.shape[0]))
 
     def _start(self, step: int) -> None:
         """Let a step start from the accepted pressures, else from nothing."""

@@ -43,7 +43,7 @@ def _tone(trial: Predictable, measured: Measured) -> Values:
     assert isinstance(case, BearingUnderLoad)
     tones = _tones(case)
     apart = np.abs(np.log(measured.at[:, None] / tones))
-    return np.asarray(tones[apart.argmin(axis=1)])
+    return tones[apart.argmin(axis=1)]
 
 
 def _read_tones(path: Path) -> list[Measured]:

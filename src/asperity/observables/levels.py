@@ -75,7 +75,7 @@ def _sound(trial: Predictable, measured: Measured) -> Values:
     passed = case.passage.passed
     assert passed is not None
     exposure = levels_in_bands(trial.collected, schema.SOUND_EXPOSURE_LEVEL.name, measured.at)
-    return np.asarray(exposure - 10.0 * np.log10(passed[1] - passed[0]))
+    return exposure - 10.0 * np.log10(passed[1] - passed[0])
 
 
 def _read_sound(path: Path) -> list[Measured]:
@@ -118,8 +118,8 @@ def _acceleration(trial: Predictable, measured: Measured) -> Values:
         case = trial.case
         assert isinstance(case, Case)
         apart = np.abs(np.array(case.rolled_over.sensor_positions) - measured.places[0])
-        return np.asarray(held[apart.argmin()])
-    return np.asarray(10.0 * np.log10(np.mean(10.0 ** (0.1 * held), axis=0)))
+        return held[apart.argmin()]
+    return 10.0 * np.log10(np.mean(10.0 ** (0.1 * held), axis=0))
 
 
 def _read_levels(what: str, reference: str, path: Path) -> list[Measured]:

@@ -187,7 +187,7 @@ def _centres(path: Path, at: Array) -> Array:
     if off.any() or (np.diff(numbers) == 0).any():
         wrong = at[off][0] if off.any() else at[0]
         raise InputError(path.name, f"a column of {wrong:g} Hz", "centres of one-third octaves, each once")
-    return np.asarray(10.0 ** (0.1 * numbers))
+    return 10.0 ** (0.1 * numbers)
 
 
 # --- as a fit takes them

@@ -151,7 +151,7 @@ def time_weighted(squared: ArrayLike, step: float, time_constant: float = FAST) 
     forced[..., 0] = values[..., 0]  # steady before
     bands = np.stack([np.ones(values.shape[-1]), np.full(values.shape[-1], -kept)])
     found = solve_banded((1, 0), bands, forced.reshape(-1, values.shape[-1]).T)  # y_n − kept y_n−1 = forced
-    return np.asarray(found.T.reshape(values.shape))
+    return found.T.reshape(values.shape)
 
 
 def pressure_level(squared: ArrayLike) -> Array:

@@ -102,7 +102,7 @@ class _Waves:
 
     def shares(self, places: Array) -> Array:
         """Shares (TERMS, k) of the nodes in what acts at places (k,) from 0 to 1 of a bay."""
-        return np.asarray(self.polynomials @ chebvander(2.0 * places - 1.0, TERMS - 1).T)
+        return self.polynomials @ chebvander(2.0 * places - 1.0, TERMS - 1).T
 
     def sent(self, bay: int, forces: Array, places: Array, sides: Iterable[int]) -> dict[int, Complex]:
         """Waves (runs, 2, f) to some sides of forces (runs, k), N, at places (k,) from 0 to 1 of a bay."""
@@ -169,4 +169,4 @@ def _convolved(forces: Array, responses: Array, places: Array) -> Array:
     period = next_fast_len(len(places) + taps, real=True)
     spectra = rfft(forces[:, None] * shares, period)
     moved = irfft(np.einsum("rnf,nf->rf", spectra, rfft(responses, period)), period)
-    return np.asarray(moved[:, : len(places) + taps])
+    return moved[:, : len(places) + taps]

@@ -46,7 +46,7 @@ class PorousGround:
     def impedance(self, frequency: ArrayLike) -> Complex:
         """Characteristic impedance over that of air, e^{+iωt}, at positive frequencies, Hz."""
         x = AIR_DENSITY * np.asarray(frequency, dtype=float) / self.flow_resistivity
-        return np.asarray(1.0 + 0.0571 * x**-0.754 - 0.087j * x**-0.732)
+        return 1.0 + 0.0571 * x**-0.754 - 0.087j * x**-0.732
 
     def reflection(self, frequency: ArrayLike, cosine: ArrayLike, distance: ArrayLike) -> Complex:
         """Reflection coefficient of a spherical wave, with the ground wave.
@@ -75,7 +75,7 @@ class PorousGround:
         plane = (cos - admittance) / (cos + admittance)
         path = np.sqrt(wavenumber(np.asarray(frequency, dtype=float)) * np.asarray(distance, dtype=float))
         w = (0.5 - 0.5j) * path * (cos + admittance)
-        return np.asarray(plane + (1.0 - plane) * (1.0 - 1j * np.sqrt(np.pi) * w * wofz(-w)))
+        return plane + (1.0 - plane) * (1.0 - 1j * np.sqrt(np.pi) * w * wofz(-w))
 
     def inverse_square(self, band: Array, heights: tuple[float, float], along: Array) -> Array:
         """Mean of 1/d² over a band: what stands for it where direct and reflected sound interfere.
@@ -187,7 +187,7 @@ class SoundPath:
             np.sum([np.interp(each, grid, one) for each in places], axis=0)
             for one in self.spread(source.height, lengths, grid, source.motion)
         ]
-        return np.asarray(self._factor * np.asarray(source.power, dtype=float)[..., None] * np.stack(spread))
+        return self._factor * np.asarray(source.power, dtype=float)[..., None] * np.stack(spread)
 
     def exposure(self, source: AxleSource, passage: Passage) -> Array:
         """Integral of the squared sound pressure over the whole passage (..., b), Pa² s.
@@ -195,7 +195,7 @@ class SoundPath:
         However far the power is spread along the rail; over hard ground W ρc Q/(4 d v) per axle.
         """
         share = len(passage.axles) / passage.speed * self.integral(source.height, source.motion)
-        return np.asarray(self._factor * share * np.asarray(source.power, dtype=float))
+        return self._factor * share * np.asarray(source.power, dtype=float)
 
     @property
     def _factor(self) -> float:
@@ -258,7 +258,7 @@ class SoundPath:
         angle = 0.5 * np.pi * (np.arange(_ANGLES) + 0.5) / _ANGLES
         lateral = self.receiver.distance
         found = self.inverse_square(height, lateral * np.tan(angle), motion) * lateral / np.cos(angle) ** 2
-        return np.asarray(np.pi * found.mean(axis=-1))
+        return np.pi * found.mean(axis=-1)
 
 
 def _strength(azimuth: Array, elevation: Array, band: Array) -> Array:

@@ -44,7 +44,7 @@ def cylinder(ka: ArrayLike) -> Array:
     of its ⟨v²⟩. Limits: (π/2)(ka)³ at low ka, 1 at high ka.
     """
     ka = np.asarray(ka, dtype=float)
-    return np.asarray(2.0 / (np.pi * ka * np.abs(h2vp(1, ka)) ** 2))
+    return 2.0 / (np.pi * ka * np.abs(h2vp(1, ka)) ** 2)
 
 
 def baffled_piston(ka: ArrayLike) -> Array:
@@ -53,7 +53,7 @@ def baffled_piston(ka: ArrayLike) -> Array:
     1 − J₁(2ka)/ka (Rayleigh 1896): (ka)²/2 at low ka, 1 at high ka.
     """
     ka = np.asarray(ka, dtype=float)
-    return np.asarray(1.0 - j1(2.0 * ka) / ka)
+    return 1.0 - j1(2.0 * ka) / ka
 
 
 def squared_mobility(track: Track, frequency: ArrayLike, force: ForceOverBay | None = None) -> Array:
@@ -190,7 +190,7 @@ class RailSection:
         f = above_zero(frequency)
         if self.table is not None:
             at, ratio = self.table
-            return np.asarray(np.exp(np.interp(np.log(f), np.log(at), np.log(ratio))))
+            return np.exp(np.interp(np.log(f), np.log(at), np.log(ratio)))
         return dipole_ratio(f, self.dipole_area, self.radiating_width)
 
     def power_per_force(self, track: Track, frequency: ArrayLike, force: ForceOverBay | None = None) -> Array:
@@ -321,7 +321,7 @@ def squared_lateral_mobility(
     def within(moved: Complex, length: float) -> Complex:
         """Integral over a piece of the products of motions (x, m, i, f) at its nodes, (i, j, f)."""
         total = np.einsum("x,xaif,ab,xbjf->ijf", weight, moved.conj(), height, moved, optimize=True)
-        return np.asarray(length * total)
+        return length * total
 
     bay = within(np.stack([waves.outgoing(spacing * x) for x in node]), spacing)
     product = waves.multipliers.conj()[:, None] * waves.multipliers
@@ -334,4 +334,4 @@ def squared_lateral_mobility(
         near = [np.einsum("ajf,njf->anf", waves.outgoing(x0 + rest * x), sent) for x in node]
         far = np.einsum("mif,njf,ijf->mnf", sent.conj(), sent, behind, optimize=True)
         found.append(far + within(np.stack(near), rest))
-    return np.asarray(2.0 * omega**2 * np.stack(found))
+    return 2.0 * omega**2 * np.stack(found)

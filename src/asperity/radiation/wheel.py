@@ -43,7 +43,7 @@ def modal_velocity_psd(
     less than a line; their sum does neither, so that what multiplies it may be averaged over each line.
     """
     weight = _line_means(wheel, frequency, compliance)
-    return np.asarray(weight[:, None] * (compliance**2 * force + displacement))
+    return weight[:, None] * (compliance**2 * force + displacement)
 
 
 def _line_means(wheel: Wheel, frequency: Array, compliance: Array) -> Array:
@@ -151,8 +151,8 @@ class RadiatingWheel:
         disc = 2.0 * np.pi * self.radius**2 * self.axial[:, None] ** 2 * self.axial_ratio(frequency)
         around = 2.0 * np.pi * self.radius * self.width
         tread = around * self.radial[:, None] ** 2 * self.radial_ratio(frequency)
-        return np.asarray(IMPEDANCE * (disc + tread) * square)
+        return IMPEDANCE * (disc + tread) * square
 
     def _ratio(self, frequency: ArrayLike, transition: Array, exponent: NDArray[np.int64]) -> Array:
         over = 2.0 * np.pi * above_zero(frequency) * self.radius / SPEED_OF_SOUND / transition[:, None]
-        return np.asarray(1.0 / (1.0 + over ** -exponent[:, None].astype(float)))
+        return 1.0 / (1.0 + over ** -exponent[:, None].astype(float))

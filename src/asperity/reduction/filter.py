@@ -189,7 +189,7 @@ def _neighbours(wavenumber: Array, excited: NDArray[np.bool_]) -> Array:
     known = octaves[excited]
     at = known[np.argmin(np.abs(known[None, :] - octaves[:, None]), axis=1)]  # held beside what is excited
     weights = np.maximum(0.0, 1.0 - np.abs(octaves[None, :] - at[:, None]) / half[:, None])
-    return np.asarray(weights * excited * wavenumber**2)
+    return weights * excited * wavenumber**2
 
 
 def _averaged(weights: Array, force: Array, lines: Array) -> Array:
@@ -274,7 +274,7 @@ def response(taps: Array, spacing: float, wavenumber: ArrayLike) -> Array:
     """
     middle = taps.shape[1] // 2
     cosines = np.cos(2.0 * math.pi * spacing * np.arange(1, middle + 1)[:, None] * np.asarray(wavenumber))
-    return np.asarray(taps[:, middle, None] + 2.0 * taps[:, middle + 1 :] @ cosines)
+    return taps[:, middle, None] + 2.0 * taps[:, middle + 1 :] @ cosines
 
 
 def tap_count(spacing: float, largest_semi_axis: float) -> int:
@@ -290,7 +290,7 @@ def punch_taps(semi_axes: ArrayLike, spacing: float) -> Array:
     a = np.atleast_1d(np.asarray(semi_axes, dtype=np.float64))[:, None]
     half = max(0, math.ceil(float(a.max()) / spacing - 0.5))
     edges = (np.arange(-half, half + 2) - 0.5) * spacing
-    return np.asarray(np.diff(np.clip(edges, -a, a), axis=1) / (2.0 * a))
+    return np.diff(np.clip(edges, -a, a), axis=1) / (2.0 * a)
 
 
 def design_fir(
@@ -365,7 +365,7 @@ def _missed(taps: Array, spacing: float, wavenumber: Array, fitted: Array) -> Ar
     """Largest distances (s,) of what taps (s, J + 1) do from fitted magnitudes (s, k) above `DOWN_TO`, dB."""
     wanted = 20.0 * np.log10(fitted)
     applied = 20.0 * np.log10(np.maximum(np.abs(response(taps, spacing, wavenumber)), 1e-9))
-    return np.asarray(np.max(np.abs(applied - wanted), axis=1, where=wanted >= DOWN_TO, initial=0.0))
+    return np.max(np.abs(applied - wanted), axis=1, where=wanted >= DOWN_TO, initial=0.0)
 
 
 def _target(contact_filter: ContactFilter, wavenumber: Array) -> Array:
@@ -385,7 +385,7 @@ def _target(contact_filter: ContactFilter, wavenumber: Array) -> Array:
 def _summed(contact_filter: ContactFilter, taps: Array) -> Array:
     """Taps that let pass what the filter does at wavenumber zero."""
     at_zero = _target(contact_filter, np.zeros(1))
-    return np.asarray(taps * at_zero / taps.sum(axis=1, keepdims=True))
+    return taps * at_zero / taps.sum(axis=1, keepdims=True)
 
 
 def filtered_texture(

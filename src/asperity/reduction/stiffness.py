@@ -187,14 +187,14 @@ class StiffnessEnsemble:
     @property
     def mean_force(self) -> Array:
         """Ensemble mean of the force, N, shape (k,)."""
-        return np.asarray(self.forces.mean(axis=0))
+        return self.forces.mean(axis=0)
 
     @property
     def force_spread(self) -> Array:
         """Standard deviation of the force between samples, N, shape (k,)."""
         if len(self.forces) < 2:
             return np.zeros(self.forces.shape[1])
-        return np.asarray(self.forces.std(axis=0, ddof=1))
+        return self.forces.std(axis=0, ddof=1)
 
     @property
     def states(self) -> Array:

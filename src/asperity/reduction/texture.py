@@ -78,7 +78,7 @@ def along_path(what: str, values: Array, start: float, spacing: float, positions
     The rows are sampled at ``start + spacing * arange(m)``; `what` they are is for the message.
     """
     index = grid_index(what, values.shape[1], start, spacing, positions)
-    return np.asarray(splines_along(np.ascontiguousarray(values, dtype=float), index))
+    return splines_along(np.ascontiguousarray(values, dtype=float), index)
 
 
 def grid_index(what: str, points: int, start: float, spacing: float, positions: ArrayLike) -> Array:

@@ -117,7 +117,7 @@ def directivity(azimuth: ArrayLike, elevation: ArrayLike, frequency: ArrayLike) 
     around, up, f = (np.asarray(each, dtype=float) for each in (azimuth, elevation, frequency))
     above = np.maximum(up, 0.0)
     vertical = 40.0 / 3.0 * (2.0 / 3.0 * np.sin(2.0 * above) - np.sin(above)) * np.log10((f + 600.0) / 200.0)
-    return np.asarray(10.0 * np.log10(0.01 + 0.99 * np.sin(around) ** 2) + vertical)
+    return 10.0 * np.log10(0.01 + 0.99 * np.sin(around) ** 2) + vertical
 
 
 def _nearest(names: Tables, *values: float) -> str:

@@ -273,7 +273,7 @@ class _Turning:
         """Heights of a soft spring whose force, N, falls with the square of the speed; none if constant."""
         if not isinstance(self.speed, SpeedCourse):
             return None
-        return lambda steps: np.asarray(force / SOFT * (self._share(steps) ** 2 - 1.0))
+        return lambda steps: force / SOFT * (self._share(steps) ** 2 - 1.0)
 
     def cage(self, steps: range) -> Array:
         """Angle of the first ball."""
@@ -412,7 +412,7 @@ def _heights(line: ArrayLike | None, spots: Values, raised: float) -> Values:
     require(heights.size >= 4, "heights of a ball", count_of(heights.size, "number"), "four or more")
     angles = TURN * np.arange(heights.size + 1) / heights.size
     spline = CubicSpline(angles, np.append(heights, heights[0]), bc_type="periodic")
-    return lambda steps: np.asarray(spline(spots(steps))) + raised
+    return lambda steps: spline(spots(steps)) + raised
 
 
 def _row_of(mechanism: Mechanism, rings: BearingRings, bearing: AnyBearing, sensor: Sensor) -> Array:

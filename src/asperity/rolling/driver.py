@@ -93,7 +93,7 @@ def recorded(stepper: Stepper, settled: int) -> dict[str, Any]:
     cores = records.pop("core")
     unconverged = int(stepper.motion.counts[1])
     return records | {
-        "time": np.asarray(stepper.course.time_step * np.arange(cores.shape[-1])),
+        "time": stepper.course.time_step * np.arange(cores.shape[-1]),
         "body": stepper.system.body,
         "history": stepper.record.contact_force,
         "degrees_of_freedom": tuple(

@@ -135,7 +135,7 @@ def _on_rail(ground: Ground, rail: RailBetween, course: Course) -> Ground:
     softest = float(kernel.weights.sum(axis=1).max())
     least = float((kernel.weights @ (-1.0) ** np.arange(taps)).min())  # of all places in a bay
     limit = "the passing of sleepers v/L", kernel.speed / kernel.track.sleeper_spacing, PER_SLEEPER
-    yields = np.asarray((vectors * squares.clip(0.0)) @ vectors.T)
+    yields = (vectors * squares.clip(0.0)) @ vectors.T
     bay = kernel.track.mass_per_length * kernel.track.sleeper_spacing
     return replace(
         ground,

@@ -106,7 +106,7 @@ def alternating_of_modes(coefficients: Array) -> Array:
     a = coefficients
     # q and q' change their sign from step to step, as the force does
     determinant = (1.0 + a[0]) * (1.0 + a[5]) - a[1] * a[4]
-    return np.asarray(((a[3] - a[2]) * (1.0 + a[5]) - a[1] * (a[7] - a[6])) / determinant)
+    return ((a[3] - a[2]) * (1.0 + a[5]) - a[1] * (a[7] - a[6])) / determinant
 
 
 def _natural(body: Body, time_step: float) -> tuple[Array, Array, Array, NDArray[np.bool_]]:
@@ -146,7 +146,7 @@ def body_step(body: Body, time_step: float) -> Array:
     step[fast, 3 * d + fast] = 1.0 / squares[fast]
     natural = basis.T @ body.mass  # z = natural y
     step = np.kron(np.eye(2), basis) @ step @ block_diag(natural, natural, basis.T, basis.T)
-    return np.asarray(step.reshape(2, d, 4, d))
+    return step.reshape(2, d, 4, d)
 
 
 def stiff_dampers(body: Body, time_step: float) -> bool:
@@ -191,7 +191,7 @@ def taken_by_dampers(body: Body, time_step: float) -> Array:
     into[force, 2 * d : 3 * d] = pushed
     into[rise, 2 * d : 3 * d] = -pushed
     into[rise, 3 * d :] = pushed
-    return np.asarray(into.T @ taken @ into).reshape(4, d, 4, d)
+    return (into.T @ taken @ into).reshape(4, d, 4, d)
 
 
 def missed_by_powers(body: Body, h: float, coordinates: Array, rates: Array, forces: Array) -> float:
@@ -305,7 +305,7 @@ def contact_resonance(stiffness: Array, direct: Array, alternating: Array, time_
     """
     inverse_mass = np.maximum(4.0 * (direct - alternating), 0.0) / time_step**2
     compliance = np.maximum(direct + 2.0 * alternating, 0.0) / 3.0
-    return np.asarray(np.sqrt(inverse_mass * stiffness / (1.0 + stiffness * compliance)) / (2.0 * np.pi))
+    return np.sqrt(inverse_mass * stiffness / (1.0 + stiffness * compliance)) / (2.0 * np.pi)
 
 
 def warn_if_coarse(time_step: float, limits: Iterable[Limit]) -> None:

@@ -88,7 +88,7 @@ def without_slow(heights: Array, spacing: float, lowest: float) -> Array:
     spectra = fft.dct(heights, axis=0, workers=thread_count())  # of mirrored lines
     spectra *= gain.reshape(-1, *[1] * (heights.ndim - 1))
     passed = fft.idct(spectra, axis=0, overwrite_x=True, workers=thread_count())
-    return np.asarray(passed[cut : rows - cut])
+    return passed[cut : rows - cut]
 
 
 def correlation_lengths(heights: Array, spacing: tuple[float, float]) -> tuple[float, float]:
@@ -320,7 +320,7 @@ def _fitted(mapped: LawMap, law: str) -> tuple[Array, Array, Array]:
 def _covariance(these: Array, those: Array) -> Array:
     """Covariance (n, m) of logarithms at coordinates (n, c) and (m, c)."""
     squares = np.sum((these[:, None] - those) ** 2, axis=-1)
-    return np.asarray(np.exp(-0.5 * squares / REACH**2) + TREND * these @ those.T)
+    return np.exp(-0.5 * squares / REACH**2) + TREND * these @ those.T
 
 
 def _coordinates(mapped: LawMap, kind: str, place: Place) -> Array:

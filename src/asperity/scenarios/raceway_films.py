@@ -123,7 +123,7 @@ def pieces_within(surface: Raceway, axes: tuple[float, float]) -> Array:
     first = (heights.shape[1] - lines) // 2
     count = len(heights) // rows
     cut = heights[: count * rows, first : first + lines].reshape(count, rows, lines)
-    return np.asarray(cut - cut.mean(axis=(1, 2), keepdims=True))
+    return cut - cut.mean(axis=(1, 2), keepdims=True)
 
 
 def rms_within(surface: Raceway, axes: tuple[float, float]) -> float:

@@ -235,7 +235,7 @@ class OnRaceway:
         body, edges = self.shape.body, self.surface.edges
         rows = (np.arange(len(body)) - len(body) // 2 + self.stride * at) % self.rows
         under = None if edges is None else edges.rearranged(lambda field: field[rows])
-        return np.asarray(body - self.surface.faults[rows]), under
+        return body - self.surface.faults[rows], under
 
     @property
     def positions(self) -> NDArray[np.intp]:

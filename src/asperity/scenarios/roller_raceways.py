@@ -130,7 +130,7 @@ class OnRollerRaceway(OnRaceway):
     def approaches(self) -> Array:
         """Approaches of the force curve, m, up to that of eight times the load."""
         largest = self.contact.approach(HIGHEST_FORCE * self.load)
-        return np.asarray(largest * np.geomspace(LEAST_STATE, 1.0, STATES))
+        return largest * np.geomspace(LEAST_STATE, 1.0, STATES)
 
     @cached_property
     def curve(self) -> ForceCurve:
@@ -145,7 +145,7 @@ class OnRollerRaceway(OnRaceway):
 
     def in_slices(self, heights: Array) -> Array:
         """Mean heights (rows, slices) of the lines of each slice."""
-        return np.asarray(heights.reshape(len(heights), self.contact.slices, -1).mean(axis=-1))
+        return heights.reshape(len(heights), self.contact.slices, -1).mean(axis=-1)
 
     def _under_widths(self, heights: Array, half_width: float) -> Array:
         """Heights (rows, …), closed around, under a flat punch of a half width, m."""
@@ -154,14 +154,14 @@ class OnRollerRaceway(OnRaceway):
 
         waves = 2.0 * np.pi * np.arange(self.rows // 2 + 1) / self.surface.circumference
         passed = j0(waves * half_width).reshape(-1, *[1] * (heights.ndim - 1))
-        return np.asarray(fft.irfft(passed * fft.rfft(heights, axis=0), self.rows, axis=0))
+        return fft.irfft(passed * fft.rfft(heights, axis=0), self.rows, axis=0)
 
     @cached_property
     def weights(self) -> Array:
         """Shares (slices,) of the stiffness of the contact under the load."""
         overlap = np.maximum(self.contact.approach(self.load) - self.contact.drops, 0.0)
         stiffness = np.where(overlap > 0.0, overlap ** (EXPONENT - 1.0), 0.0)
-        return np.asarray(stiffness / stiffness.sum())
+        return stiffness / stiffness.sum()
 
     def averaged(self, heights: Array, axes: ArrayLike) -> Array:
         """Heights (rows, lines), m, averaged under half widths (k, 2), m, with `over_faults`: (k, rows)."""

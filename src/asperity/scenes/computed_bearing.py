@@ -169,4 +169,4 @@ def thinned(signal: Array, every: int) -> Array:
         return signal
     from scipy.signal import resample_poly
 
-    return np.asarray(resample_poly(signal, 1, every, axis=-1, padtype="line"))
+    return resample_poly(signal, 1, every, axis=-1, padtype="line")

@@ -102,7 +102,7 @@ class HammerTest:
         """
         receptance = self.mobility / (2j * np.pi * self.frequency)
         with np.errstate(invalid="ignore"):  # where none was measured
-            return np.asarray(np.mean(np.abs(self.mobility / (other + receptance)) ** 2, axis=1))
+            return np.mean(np.abs(self.mobility / (other + receptance)) ** 2, axis=1)
 
     def longer(self, computed: "HammerTest") -> Array:
         """Length of the rail that radiates over that computed (b,); one where no decay rate was measured."""
@@ -120,13 +120,13 @@ def _lines_in(band: ArrayLike, count: int = LINES) -> Array:
     """Frequencies of each band (b, count), even over lg f, Hz."""
     centre = np.atleast_1d(np.asarray(band, dtype=float))
     steps = (np.arange(count) + 0.5) / count
-    return np.asarray(centre[:, None] * HALF_BAND ** (2.0 * steps - 1.0))
+    return centre[:, None] * HALF_BAND ** (2.0 * steps - 1.0)
 
 
 def _rate_in_bands(rate: Array, mobility: Complex) -> Array:
     """Decay rates (b,), dB/m, of responses that are summed over each band, at its lines (b n,) and (b, n)."""
     lengths = 1.0 / rate.reshape(mobility.shape)
-    return np.asarray(1.0 / np.average(lengths, axis=1, weights=np.abs(mobility) ** 2))
+    return 1.0 / np.average(lengths, axis=1, weights=np.abs(mobility) ** 2)
 
 
 def lateral_hammer_test(track: LateralTrack, band: ArrayLike, count: int = LINES) -> Array:

@@ -410,7 +410,7 @@ def _deviation(computed: compute.Computed, density: Array, power: Array, values:
         variance[..., b] = level_deviation(held) ** 2
     with np.errstate(invalid="ignore", divide="ignore"):
         share = weighted / weighted.sum(axis=-1, keepdims=True)
-    return np.asarray(np.sqrt(np.sum(share**2 * variance, axis=-1)))
+    return np.sqrt(np.sum(share**2 * variance, axis=-1))
 
 
 def mode_by_mode(case: Any, power: Array, band: Array, *, every: bool) -> Values:

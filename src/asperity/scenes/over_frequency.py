@@ -116,7 +116,7 @@ def passing_frequencies(offsets: Iterable[float], speed: float, highest: float) 
     if not gaps.size or np.ptp(gaps) > EQUAL * gaps.mean():
         return np.zeros(0)
     first = speed / gaps.mean()
-    return np.asarray(first * np.arange(1, int(highest / first) + 1))
+    return first * np.arange(1, int(highest / first) + 1)
 
 
 def body_motion(computed: Computed) -> Array:

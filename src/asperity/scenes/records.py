@@ -48,7 +48,7 @@ class RecordedRuns:
     @cached_property
     def shown(self) -> NDArray[np.bool_]:
         """Which lines a result holds: up to the edge of the one-third octave of the highest frequency."""
-        return np.asarray((self.frequency > 0.0) & (self.frequency <= 1.13 * self.case.highest_frequency))
+        return (self.frequency > 0.0) & (self.frequency <= 1.13 * self.case.highest_frequency)
 
     def levels(self, density: Array, reference: float = 1.0) -> Array:
         """One-third-octave levels (..., b), dB, of PSDs on all lines."""

@@ -101,7 +101,7 @@ class Sideways:
         """Mean square of the linear vertical force at each place over their mean (n, f)."""
         first, (normal, _) = self.computed.scene.first, self.stiffness
         square = np.abs(force_transfer(self.lines, first, self.track.track, normal, self.places)) ** 2
-        return np.asarray(square / square.mean(axis=0))
+        return square / square.mean(axis=0)
 
     @cached_property
     def seen(self) -> tuple[Array, Array]:
@@ -121,7 +121,7 @@ class Sideways:
     @cached_property
     def seen_of_all(self) -> Array:
         """Its second part, the sum over all contacts (laws, f)."""
-        return np.asarray(self.seen[1].sum(axis=1))
+        return self.seen[1].sum(axis=1)
 
     def means(self, values: NDArray[Any]) -> NDArray[Any]:
         """Means over the lines (n, f) of values per square of the vertical force (n, k)."""

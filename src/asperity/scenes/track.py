@@ -115,7 +115,7 @@ def _coupled(scene: Scene, stiffness: float, speed: float, places: Array, freque
         transfer = scene.coupled_transfer(stiffness, float(place), frequency, count)
         squares[0] += np.mean(np.abs(np.sum(transfer * delay, axis=1)) ** 2, axis=0)
         squares[1] += np.mean(np.sum(np.abs(transfer) ** 2, axis=1), axis=0)
-    return np.asarray(squares / len(places))
+    return squares / len(places)
 
 
 def _roughness(computed: compute.Computed) -> Values:

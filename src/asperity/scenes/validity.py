@@ -419,7 +419,7 @@ def compared_bands(over_frequency: xarray.Dataset) -> np.ndarray:
     band = over_frequency[spectra.BAND.name]
     start = over_frequency.get(spectra.START_SHARE.name, 0.0)
     inside = (band >= low * 0.9) & (band <= high * 1.1)
-    return np.asarray(inside & ~say_little(over_frequency[spectra.BAND_TIME_PRODUCT.name], start))
+    return inside & ~say_little(over_frequency[spectra.BAND_TIME_PRODUCT.name], start)
 
 
 def difference_to(baseline: str) -> Entry:

@@ -455,7 +455,7 @@ class SupportedBeam(_Uniform):
         free: Array = np.eye(len(mass))
         if fixed:
             free = np.asarray(scipy.linalg.qr(np.array(fixed).T)[0][:, len(fixed) :], dtype=np.float64)
-        mass, stiffness, lossy = (np.asarray(free.T @ part @ free) for part in (mass, stiffness, lossy))
+        mass, stiffness, lossy = (free.T @ part @ free for part in (mass, stiffness, lossy))
         # inverted, the lowest modes have the largest values, and the fewest digits are lost in them
         shift = self.bending_stiffness / self.mass_per_length / self.length**4
         inverse, vectors = scipy.linalg.eigh(mass, stiffness + shift * mass)

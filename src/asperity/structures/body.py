@@ -112,7 +112,7 @@ class Body:
 
         answers = modal_answers(f, self.natural_frequencies, self.damping_ratios)
         flexible = np.einsum("cs,ns,ds->ncd", self.shapes, answers, self.shapes)
-        return np.asarray(self.contacts @ moved + flexible)
+        return self.contacts @ moved + flexible
 
     @property
     def static_loads(self) -> Array:
@@ -233,7 +233,7 @@ class Wheel:
         f = np.asarray(frequency, dtype=float)
         _refuse_rest(f)
         modes = modal_answers(f, self.natural_frequencies, self.damping_ratios)
-        return np.asarray(modes @ (1.0 / self.modal_masses) - 1.0 / (self.mass * (2.0 * np.pi * f) ** 2))
+        return modes @ (1.0 / self.modal_masses) - 1.0 / (self.mass * (2.0 * np.pi * f) ** 2)
 
 
 def chain(masses: ArrayLike, stiffnesses: ArrayLike, dampings: ArrayLike, *, load: float = 0.0) -> Body:

@@ -144,11 +144,11 @@ class _Fit:
     def banded(self, values: NDArray[Any]) -> NDArray[Any]:
         """Mean over places and over the frequencies of each band, (places, f, …) → (bands, …)."""
         mean = values.mean(axis=0)
-        return np.asarray(mean.reshape(-1, LINES, *mean.shape[1:]).mean(axis=1))
+        return mean.reshape(-1, LINES, *mean.shape[1:]).mean(axis=1)
 
     def parts(self, unknowns: Array) -> Array:
         """Coefficients of spring and elements, (lossy parts, 1 + elements)."""
-        return np.asarray(self.least + unknowns.reshape(self.least.shape))
+        return self.least + unknowns.reshape(self.least.shape)
 
     def track_of(self, unknowns: Array, stiffer: str = "", share: float = 0.0) -> Track:
         """The track with the elements that the unknowns stand for, one part stiffer by a share."""

@@ -138,11 +138,11 @@ class CellWaves:
         """Free waves from both ends of a span at a place in it (2, 2, f)."""
         inside = span % len(self.steps)
         ends = np.array([place, self.edges[inside + 1] - self.edges[inside] - place])
-        return np.asarray(np.exp(-1j * ends[:, None, None] * self.wavenumbers))
+        return np.exp(-1j * ends[:, None, None] * self.wavenumbers)
 
     def _shape(self, waves: Complex, span: int, parts: Complex) -> Complex:
         """Waves (2, f) in a span, in its own scale, by `_parts` at a place."""
-        return np.asarray(np.einsum("eif,eijf->jf", parts, waves[span % len(self.steps)]))
+        return np.einsum("eif,eijf->jf", parts, waves[span % len(self.steps)])
 
 
 def cell_waves(
@@ -260,14 +260,12 @@ def _carry(amplitudes: Complex, supports: Complex, decays: Complex, right: _Half
         sent = decays[span][:, None] * waves
         support = behind[span]
         felt = np.sum(right.felt[support][:, None] * sent, axis=0)
-        return np.asarray(sent - right.force[support] * amplitudes[:, None] * felt)
+        return sent - right.force[support] * amplitudes[:, None] * felt
 
     def backwards(span: int, waves: Complex) -> Complex:
         """Before the span, times the decay of both waves."""
         felt = np.sum(right.felt[behind[span]][:, None] * waves, axis=0)
-        return np.asarray(
-            decays[span][::-1, None] * (waves + supports[behind[span]] * amplitudes[:, None] * felt)
-        )
+        return decays[span][::-1, None] * (waves + supports[behind[span]] * amplitudes[:, None] * felt)
 
     onwards, returned = one + 0j * decays[0], one + 0j * decays[0]
     for span in range(count):

@@ -65,7 +65,7 @@ class LateralWaves:
         return self._of(self.spacing - x) + self._of(x) / self.multipliers
 
     def _of(self, x: float) -> Complex:
-        return np.asarray(np.einsum("aijf,if->ajf", self.weights, np.sin(self.wavenumbers * x)))
+        return np.einsum("aijf,if->ajf", self.weights, np.sin(self.wavenumbers * x))
 
     def receptance(self, x: float, x0: float) -> Complex:
         """Motion at `x` per force at `x0`, (m, m, f); positions from any support, m."""
@@ -287,7 +287,7 @@ class LateralTrack(LateralParameters):
         """
         _, sideways = self.contact_shapes(0.0)
         motion = self.waves(_angular(frequency)).receptance(x, x0)
-        return np.asarray(np.einsum("a,abf,b->f", sideways, motion, sideways))
+        return np.einsum("a,abf,b->f", sideways, motion, sideways)
 
     def answers(self, omega: Array | Complex, x: float, x0: float, place: float) -> Complex:
         """Receptances of the head at a place across it, (2, 2, f), m/N, with those of vertical bending.
@@ -305,7 +305,7 @@ class LateralTrack(LateralParameters):
     def decay_rate(self, frequency: ArrayLike) -> Array:
         """Decay rate (f,), dB/m, of the wave that reaches farthest, −20 lg|λ|/L; frequencies (f,), Hz."""
         largest = np.abs(self.waves(_angular(frequency)).multipliers).max(axis=0)
-        return np.asarray(-20.0 * np.log10(largest) / self.track.sleeper_spacing)
+        return -20.0 * np.log10(largest) / self.track.sleeper_spacing
 
     def decay_rate_en15461(self, frequency: ArrayLike) -> Array:
         """Decay rate (f,), dB/m, as a hammer on the side of the head at mid-span finds it; (f,), Hz.
@@ -344,18 +344,18 @@ def wheel_receptances(
         return rigid.astype(complex)
     shape = np.stack(modes.at(place))  # (2, p)
     answers = modal.modal_answers(frequency, modes.natural_frequencies, modes.damping_ratios)
-    return np.asarray(rigid + np.einsum("ap,bp,fp->abf", shape, shape, answers))
+    return rigid + np.einsum("ap,bp,fp->abf", shape, shape, answers)
 
 
 def at_springs(receptances: Complex, normal: float, tangential: float) -> Complex:
     """Both bodies' receptances (2, 2, ...), and those of the springs of the contact, N/m: A, m/N."""
     springs = np.diag([1.0 / normal, 1.0 / tangential])
-    return np.asarray(receptances + np.expand_dims(springs, tuple(range(2, receptances.ndim))))
+    return receptances + np.expand_dims(springs, tuple(range(2, receptances.ndim)))
 
 
 def lateral_force(answer: Complex) -> Complex:
     """Lateral force per vertical force (f,), T/F = −A_vl/A_ll: the lateral motion of both bodies agrees."""
-    return np.asarray(-answer[1, 0] / answer[1, 1])
+    return -answer[1, 0] / answer[1, 1]
 
 
 def vertical_change(answer: Complex) -> Complex:
@@ -363,4 +363,4 @@ def vertical_change(answer: Complex) -> Complex:
 
     What the lateral force does to the vertical one, which a run in time leaves out.
     """
-    return np.asarray(1.0 / (1.0 - answer[0, 1] * answer[1, 0] / (answer[0, 0] * answer[1, 1])))
+    return 1.0 / (1.0 - answer[0, 1] * answer[1, 0] / (answer[0, 0] * answer[1, 1]))

@@ -82,7 +82,7 @@ class Mobility:
         at = np.polynomial.legendre.legvander(np.array([x]), count)[0]
         integral = np.concatenate([[x + 1.0], at[2:] - at[:-2]])  # times 2k + 1, of each k below count
         basis = np.polynomial.legendre.legvander(self.nodes, count - 1)
-        return np.asarray(0.25 * self.weights * (basis @ integral))
+        return 0.25 * self.weights * (basis @ integral)
 
     def sleepers(self, track: Track, force: ForceOverBay | None) -> Array:
         """Sum over all half sleepers of the squared mobility (f,), mean over the places of the force."""
@@ -148,7 +148,7 @@ class Mobility:
         along = np.concatenate([edge + each for edge, each in zip(self.edges, places, strict=False)])
         square = 1.0 if force is None else force(along)
         weights = np.concatenate(lengths)[:, None] * np.broadcast_to(square, values.shape)
-        return np.asarray(self.omega**2 * np.average(values, axis=0, weights=weights))
+        return self.omega**2 * np.average(values, axis=0, weights=weights)
 
 
 def _squared(sent: Complex, form: Complex) -> Array:
@@ -256,12 +256,12 @@ class _Field:
         inertia = rail.mass_per_length * self.omega**2 - self.held
         bent = rail.bending_stiffness * np.imag(relative)
         if rail.shear_stiffness is None:
-            return np.asarray(bent * self._along(_changed(self.waves, -squares, -squares)))
+            return bent * self._along(_changed(self.waves, -squares, -squares))
         share = inertia / (rail.shear_stiffness * relative)
         slope = 1j * share / self.wavenumbers  # of w' - θ = S⁻¹ (m' ω² - s) w'/k²
         curvature = share - squares
         sheared = rail.shear_stiffness * np.imag(relative) * self._along(_changed(self.waves, -slope, slope))
-        return np.asarray(bent * self._along(_changed(self.waves, curvature, curvature)) + sheared)
+        return bent * self._along(_changed(self.waves, curvature, curvature)) + sheared
 
 
 def _changed(waves: CellWaves, forth: Complex, back: Complex) -> CellWaves:

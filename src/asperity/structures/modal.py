@@ -141,7 +141,7 @@ def static_modes(flexibility: Array | None, count: int) -> Array:
         return omega * np.sqrt(flexibility)[:, None]
     values, vectors = np.linalg.eigh(0.5 * (flexibility + flexibility.T))
     kept = values > NEGLIGIBLE * values[-1]
-    return np.asarray(omega * vectors[:, kept] * np.sqrt(values[kept]))
+    return omega * vectors[:, kept] * np.sqrt(values[kept])
 
 
 class Pieces(NamedTuple):

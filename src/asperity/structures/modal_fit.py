@@ -97,7 +97,7 @@ def _spanning(weighted: Complex) -> Complex:
     _, size, rows = np.linalg.svd(joined, full_matrices=False)
     large = size > 1e-4 * size[0]
     real, imaginary = np.hsplit(size[large, None] * rows[large], 2)
-    return np.asarray(real + 1j * imaginary)
+    return real + 1j * imaginary
 
 
 def _stacked(matrix: Complex) -> Array:
@@ -134,7 +134,7 @@ def _relocated(s: Complex, weight: Array, spanning: Complex, poles: Complex) -> 
 
 def _stable(poles: Complex, radius: float | None) -> Complex:
     if radius is None:
-        return np.asarray(-np.abs(poles.real) + 1j * poles.imag)
+        return -np.abs(poles.real) + 1j * poles.imag
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(np.abs(poles) > radius, radius**2 / np.conj(poles), poles)
 
@@ -497,5 +497,5 @@ def _solved(matrix: Array, right: Array, positive: bool = False) -> Array:
     vectors = vectors[:, kept]
     turned = (vectors.T @ (right / size)) / root
     if positive:
-        return np.asarray(_not_negative(root[:, None] * vectors.T, turned)[0] / size)
-    return np.asarray(vectors @ (turned / root) / size)
+        return _not_negative(root[:, None] * vectors.T, turned)[0] / size
+    return vectors @ (turned / root) / size

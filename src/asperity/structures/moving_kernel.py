@@ -50,12 +50,12 @@ class HatResponse:
 
     def windowed(self, spectra: Complex) -> Array:
         """The same over `growth` (taps,), which the exponential window took; spectra are folded in place."""
-        return np.asarray(fft.irfft(_folded(spectra, self.taps), 2 * self.taps, axis=1)[:, : self.taps])
+        return fft.irfft(_folded(spectra, self.taps), 2 * self.taps, axis=1)[:, : self.taps]
 
     @property
     def growth(self) -> Array:
         """What the exponential window takes from each lag, (taps,)."""
-        return np.asarray(np.exp(self.shift * self.time_step * np.arange(self.taps)))
+        return np.exp(self.shift * self.time_step * np.arange(self.taps))
 
 
 def _folded(spectra: Complex, n: int) -> Complex:

@@ -269,13 +269,13 @@ def _distances(points: Array, a: Array, b: Array) -> Array:
     along = b - a
     square = np.maximum(np.sum(along**2, axis=1), 1e-300)
     share = np.clip(np.sum((points[:, None] - a) * along, axis=-1) / square, 0.0, 1.0)
-    return np.asarray(np.linalg.norm(points[:, None] - a - share[..., None] * along, axis=-1))
+    return np.linalg.norm(points[:, None] - a - share[..., None] * along, axis=-1)
 
 
 def _areas(corners: Array) -> Array:
     """Twice the areas of triangles (e, 3, 2), positive if they are counterclockwise."""
     first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    return np.asarray(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0])
+    return first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
 
 
 def _triangles(corners: Array, around: Array) -> NDArray[np.int64]:

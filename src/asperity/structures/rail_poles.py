@@ -204,7 +204,7 @@ def _spread(kernel: MovingKernel) -> NDArray[np.int64]:
 def _decays(poles: Complex, lags: int) -> Complex:
     with np.errstate(divide="ignore"):
         rates = np.log(np.where(poles == 0.0, 1e-300, poles))
-    return np.asarray(np.exp(rates[:, None] * np.arange(lags)))
+    return np.exp(rates[:, None] * np.arange(lags))
 
 
 def _residues(weights: Array, poles: Complex) -> Complex:

@@ -94,7 +94,7 @@ class WebbedSection:
                 [6.0 * h, 2.0 * h**2, -6.0 * h, 4.0 * h**2],
             ]
         )
-        return np.asarray(self.web_stiffness / h**3 * self.ends.T @ strip @ self.ends)
+        return self.web_stiffness / h**3 * self.ends.T @ strip @ self.ends
 
     @cached_property
     def web_squares(self) -> Array:
@@ -108,7 +108,7 @@ class WebbedSection:
                 [-13.0 * h, -3.0 * h**2, -22.0 * h, 4.0 * h**2],
             ]
         )
-        return np.asarray(self.ends.T @ strip @ self.ends / 420.0)
+        return self.ends.T @ strip @ self.ends / 420.0
 
     @cached_property
     def mass(self) -> Array:
@@ -116,7 +116,7 @@ class WebbedSection:
         own = np.zeros(MOTIONS)
         own[_MOVED] = self.beams.mass
         own[_TWISTED] = self.beams.polar_inertia
-        return np.asarray(np.diag(own) + self.web_mass * self.web_squares)
+        return np.diag(own) + self.web_mass * self.web_squares
 
     @property
     def top(self) -> Array:
@@ -137,7 +137,7 @@ class WebbedSection:
             lengths = np.array([end - start, (end**2 - start**2) / 2.0, (end**3 - start**3) / 3.0])
             own = slice(first, first + 2)
             found[own, own] += lengths[[[0, 1], [1, 2]]]
-        return np.asarray(found / (top - bottom))
+        return found / (top - bottom)
 
 
 def section_of(rail: LateralParameters) -> WebbedSection:
@@ -209,7 +209,7 @@ def _polar_inertias(
     remedy = "Are the centroids of head and foot too far apart, or is polar_inertia too small?"
     require(bool(left > 0.0), "rail whose web bends", received, "more than 0", remedy)
     upright = masses * np.array([top - high, low - bottom]) ** 2
-    return np.asarray(rotary + left * upright / upright.sum())
+    return rotary + left * upright / upright.sum()
 
 
 def webbed_waves(
@@ -227,7 +227,7 @@ def webbed_waves(
     """
     beams = section.beams
     size = MOTIONS + len(_BENT)
-    square = np.asarray(omega**2)
+    square = omega**2
     lossy = np.broadcast_to(losses, square.shape)
     rest = np.zeros((len(square), size, size), dtype=complex)  # q⁰ of D
     rest[:, :MOTIONS, :MOTIONS] = (

@@ -174,7 +174,7 @@ class Ring(Modal):
         """Motion of a place for each mode (m,), kg^(−1/2): outwards at an angle, rad, or axially."""
         one_of("direction", direction, ("radial", "axial"))
         size = self.radial if direction == "radial" else self.axial
-        return np.asarray(size * np.cos(self.lobes * angle - self.phases))
+        return size * np.cos(self.lobes * angle - self.phases)
 
     def pressed(self, radial: float, axial: float = 0.0) -> Array:
         """Constant force on each mode (m,) of forces along ψ = 0 and along the axis, N."""
@@ -182,7 +182,7 @@ class Ring(Modal):
         require(held, "axial load (N)", f"{axial:g}", "0 on a ring whose contacts carry none")
         along = self.lobes == 1.0, self.lobes == 0.0
         forces = np.where(along[0], radial, 0.0) * self.towards(0.0)
-        return np.asarray(forces + np.where(along[1], axial, 0.0) * self.axial)
+        return forces + np.where(along[1], axial, 0.0) * self.axial
 
 
 CLOSED = 1e-6
@@ -244,4 +244,4 @@ class Around(Modal):
     def towards(self, angle: float, direction: Direction = "radial") -> Array:
         """As of `Ring`: outwards at an angle, rad; none axially."""
         radial = one_of("direction", direction, ("radial", "axial")) == "radial"
-        return np.asarray(self.modes.shapes([angle % (2.0 * math.pi)])[0][0] * float(radial))
+        return self.modes.shapes([angle % (2.0 * math.pi)])[0][0] * float(radial)

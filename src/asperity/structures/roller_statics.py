@@ -69,28 +69,28 @@ class LoadedRollers:
     @property
     def inner_load(self) -> Array:
         """Loads of the contacts with the inner ring (m, Z), N."""
-        return np.asarray(self.inner_slices.sum(axis=-1))
+        return self.inner_slices.sum(axis=-1)
 
     @property
     def outer_load(self) -> Array:
         """Loads of the contacts with the outer ring (m, Z), N."""
-        return np.asarray(self.outer_slices.sum(axis=-1))
+        return self.outer_slices.sum(axis=-1)
 
     @property
     def inner_pressure(self) -> Array:
         """Largest pressures along the rollers at the inner ring (m, Z), Pa."""
-        return np.asarray(self.bearing.inner_contact.pressures(self.inner_slices).max(axis=-1))
+        return self.bearing.inner_contact.pressures(self.inner_slices).max(axis=-1)
 
     @property
     def outer_pressure(self) -> Array:
         """Largest pressures along the rollers at the outer ring (m, Z), Pa."""
-        return np.asarray(self.bearing.outer_contact.pressures(self.outer_slices).max(axis=-1))
+        return self.bearing.outer_contact.pressures(self.outer_slices).max(axis=-1)
 
     @property
     def carrying_length(self) -> Array:
         """Length of each roller that touches the inner ring (m, Z), m."""
         share = np.count_nonzero(self.inner_slices, axis=-1) / self.bearing.slices
-        return np.asarray(self.bearing.roller_length * share)
+        return self.bearing.roller_length * share
 
     def semi_axes(self, ring: str) -> tuple[Array, Array]:
         """Half widths and half lengths (m, Z) of contacts with the ``"inner"`` or ``"outer"`` ring, m."""

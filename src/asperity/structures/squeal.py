@@ -50,12 +50,12 @@ class CreepingContact:
     def equation(self, receptances: Complex, omega: Complex) -> Complex:
         """What is zero where wheel and rail move by themselves (n,), m/N."""
         (vv, vl), (_, ll) = at_springs(receptances, self.normal, self.tangential)
-        return np.asarray(vv + 1j * omega * self.damping * (vv * ll - vl**2) - self.coupling * vl)
+        return vv + 1j * omega * self.damping * (vv * ll - vl**2) - self.coupling * vl
 
     def force_ratio(self, receptances: Complex) -> Complex:
         """Normal over lateral force of such a motion (n,)."""
         answer = at_springs(receptances, self.normal, self.tangential)
-        return np.asarray(-answer[0, 1] / answer[0, 0])
+        return -answer[0, 1] / answer[0, 0]
 
     def roots(self, receptances: Callable[[Complex], Complex], poles: Complex) -> Complex:
         """Angular frequencies (p,), rad/s, at which wheel and rail move by themselves, one near each pole.
@@ -97,7 +97,7 @@ class CreepingContact:
 def poles_of(modes: WheelModes) -> Complex:
     """Angular frequencies (p,), rad/s, at which the modes of a wheel ring by themselves; they decay."""
     ratio = modes.damping_ratios
-    return np.asarray(2.0 * np.pi * modes.natural_frequencies * (np.sqrt(1.0 - ratio**2) + 1j * ratio))
+    return 2.0 * np.pi * modes.natural_frequencies * (np.sqrt(1.0 - ratio**2) + 1j * ratio)
 
 
 def standing_modes(modes: WheelModes) -> NDArray[np.intp]:
@@ -123,4 +123,4 @@ def ringing_modes(modes: WheelModes, place: float, omega: Complex, forces: Compl
         pushed = (np.multiply.outer(forces, radial) + axial) / (
             (omega[:, None] - poles) * (omega[:, None] + poles.conj())
         )
-    return np.asarray(np.argmax(np.abs(pushed), axis=1))
+    return np.argmax(np.abs(pushed), axis=1)

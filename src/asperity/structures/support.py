@@ -280,17 +280,17 @@ class BendingSleeper(Element):
         waves = self._waves(omega, below)
         seat = 0.5 * self.seat_distance
         total = self._along(waves, lambda x: np.abs(waves.at(x)) ** 2)
-        return np.asarray(total / (0.5 * self.length) / np.abs(waves.at(seat)) ** 2)
+        return total / (0.5 * self.length) / np.abs(waves.at(seat)) ** 2
 
     def lost(self, omega: ArrayLike, below: Complex | None) -> Array:
         """Imaginary stiffness, N/m, by which it dissipates itself, per square of how it moves by `spread`."""
-        lost: Array = np.asarray(np.imag(self._bending(omega)))
+        lost: Array = np.imag(self._bending(omega))
         if below is None or not np.any(lost):
             return np.zeros(np.shape(omega))
         waves = self._waves(omega, below)
         bent = self._along(waves, lambda x: np.abs(waves.curvature(x)) ** 2)
         moved = self._along(waves, lambda x: np.abs(waves.at(x)) ** 2) / (0.5 * self.length)
-        return np.asarray(lost * bent / moved)
+        return lost * bent / moved
 
     def _along(self, waves: "_SleeperWaves", value: Callable[[float], Array]) -> Array:
         """Integral over the half of what there is at a distance from the middle."""
@@ -466,7 +466,7 @@ class MeasuredSleeper(Element):
             return 1.0
         modes = self._modes(omega, below)
         squares = np.abs(modes) ** 2 @ np.array(self.modal_masses) / self.mass
-        return np.asarray(squares / np.abs(modes.sum(axis=-1)) ** 2)
+        return squares / np.abs(modes.sum(axis=-1)) ** 2
 
     def lost(self, omega: ArrayLike, below: Complex | None) -> Array:
         """Imaginary stiffness, N/m, by which it dissipates itself, per square of how it moves by `spread`."""
@@ -475,7 +475,7 @@ class MeasuredSleeper(Element):
         squares = np.abs(self._modes(omega, below)) ** 2
         masses = np.array(self.modal_masses)
         damping = 4.0 * np.pi * np.array(self.damping_ratios) * self.natural_frequencies * masses
-        return np.asarray(self.mass * np.real(omega) * (squares @ damping) / (squares @ masses))
+        return self.mass * np.real(omega) * (squares @ damping) / (squares @ masses)
 
     def _modes(self, omega: ArrayLike, below: Complex) -> Complex:
         """Displacement of the seat in each mode per force (..., k), m/N."""
@@ -483,7 +483,7 @@ class MeasuredSleeper(Element):
         own = 2.0 * np.pi * np.array(self.natural_frequencies)
         held = below[..., None] / self.mass
         stiffness = own**2 + held - at**2 + 2j * np.array(self.damping_ratios) * own * at
-        return np.asarray(1.0 / (np.array(self.modal_masses) * stiffness))
+        return 1.0 / (np.array(self.modal_masses) * stiffness)
 
 
 def check_receptance(frequency: Array, receptance: Complex) -> None:

@@ -424,11 +424,11 @@ def _over_disc(mesh: Mesh, axial: Array) -> Array:
     """Integral of the square of axial shapes (p, k) over both sides, per π: ∫ u² r |dr|, (p,)."""
     r = mesh.nodes[mesh.edges, 0]
     weight = _SIMPSON * r * np.abs(r[:, 2] - r[:, 0])[:, None]
-    return np.asarray(np.einsum("peb,eb->p", axial[:, mesh.edges] ** 2, weight))
+    return np.einsum("peb,eb->p", axial[:, mesh.edges] ** 2, weight)
 
 
 def _mean_square(mesh: Mesh, edges: NDArray[np.int64], radial: Array) -> Array:
     """Mean square of radial shapes (p, k) along edges, over their axial places (p,)."""
     z = mesh.nodes[edges, 1]
     weight = _SIMPSON * np.abs(z[:, 2] - z[:, 0])[:, None]
-    return np.asarray(np.einsum("peb,eb->p", radial[:, edges] ** 2, weight) / weight.sum())
+    return np.einsum("peb,eb->p", radial[:, edges] ** 2, weight) / weight.sum()

@@ -201,7 +201,7 @@ def _across_waves() -> tuple[Array, Array]:
     """Wavenumbers u (j,) of waves across a tile, over κ, and their shares of the mean square, D."""
     step = 2.0 * np.pi / TILE_ACROSS
     u = step * np.arange(-round(HIGHEST_ACROSS / step), round(HIGHEST_ACROSS / step) + 1)
-    weight = np.asarray((1.0 + u * u) ** -1.5)
+    weight = (1.0 + u * u) ** -1.5
     return np.asarray(u), weight / weight.sum()
 
 

@@ -24,7 +24,7 @@ def cell_means(heights: Array) -> Array:
     """
     z = np.pad(heights, 1, mode="reflect", reflect_type="odd")
     beside = z[2:, 1:-1] + z[:-2, 1:-1] + z[1:-1, 2:] + z[1:-1, :-2]
-    return np.asarray(heights + (beside - 4.0 * heights) / 24.0)
+    return heights + (beside - 4.0 * heights) / 24.0
 
 
 class MeansOverCells:

@@ -143,4 +143,4 @@ def dipped_joint(x: ArrayLike, depth: float, length: float) -> Array:
     allowed = f"above zero, up to {length / 20.0:.4g} m (a twentieth of its length)"
     require(0.0 < depth <= length / 20.0, "depth of the dipped joint", f"{depth} m", allowed)
     remaining = np.clip(1.0 - 2.0 * np.abs(np.asarray(x, dtype=np.float64)) / length, 0.0, None)
-    return np.asarray(-depth * remaining**2)
+    return -depth * remaining**2

@@ -67,7 +67,7 @@ class Edges:
     @cached_property
     def places(self) -> Array:
         """Distances of the middles of cells from the edge over their width along its normal (rows, lines)."""
-        return np.asarray(self.distance / self.sides().sum(axis=0))
+        return self.distance / self.sides().sum(axis=0)
 
     @property
     def sound(self) -> NDArray[np.bool_]:
@@ -77,7 +77,7 @@ class Edges:
     @property
     def crossed(self) -> NDArray[np.bool_]:
         """Those of them that give way more than others, because an edge crosses them or is close."""
-        return np.asarray(self.sound & (self.places < 0.5))
+        return self.sound & (self.places < 0.5)
 
     @property
     def shares(self) -> Array:

@@ -152,7 +152,7 @@ class Fault:
 
             places = zip((x, y), self.map.spacing, self.map.shape, strict=True)
             index = [at / step + 0.5 * (points - 1) for at, step, points in places]
-            return np.asarray(map_coordinates(self.map.heights, index, order=1, cval=0.0))
+            return map_coordinates(self.map.heights, index, order=1, cval=0.0)
         a = 0.5 * self.length
         b = 0.5 * self.width
         depth = self.depth

@@ -41,7 +41,7 @@ def harmonic(heights: Array, missing: NDArray[np.bool_], spacings: Array) -> Arr
     matrix, right = _equations(heights - datum, missing, spacings)
     correction = linalg.LinearOperator(matrix.shape, _cycle(matrix, np.nonzero(missing), spacings))
     found, _ = linalg.cg(matrix, right, rtol=ACCURACY, M=correction)
-    return np.asarray(found + datum)
+    return found + datum
 
 
 def _equations(heights: Array, missing: NDArray[np.bool_], spacings: Array) -> tuple[sparse.csr_array, Array]:

@@ -179,7 +179,7 @@ def _legendre(first: int, stop: int, count: int, degree: int) -> Array:
     """Legendre polynomials (stop - first, degree + 1) at some of so many points evenly from -1 to 1."""
     points = np.arange(first, stop) * (2.0 / (count - 1)) - 1.0
     points[count - 1 - first :] = 1.0  # as it is
-    return np.asarray(np.polynomial.legendre.legvander(points, degree))
+    return np.polynomial.legendre.legvander(points, degree)
 
 
 def rotated(surface: "HeightMap", direction: float) -> "HeightMap":

@@ -144,7 +144,7 @@ def _correlation(maps: list[Array], spacing: tuple[float, float]) -> Array:
     longer *= j0(2.0 * np.pi / LONGEST * np.hypot(lags[0][:, None], lags[1][None, :]))
     whole = resolved + max(0.0, 1.0 - resolved[0, 0]) * longer
     # the lag of half the grid is zero, and its own opposite
-    return np.asarray(np.delete(np.delete(whole, grid[0] // 2, 0), grid[1] // 2, 1) / whole[0, 0])
+    return np.delete(np.delete(whole, grid[0] // 2, 0), grid[1] // 2, 1) / whole[0, 0]
 
 
 def _spectrum(
@@ -180,7 +180,7 @@ def _spectrum(
 def _faded(points: int, grid: int) -> Array:
     """Correlation that fades out at `points`, with a spectrum nowhere negative: that of a Hann window."""
     lobe = fft.irfft(np.abs(fft.rfft(_hann(points), grid)) ** 2, grid)
-    return np.asarray(lobe / lobe[0])
+    return lobe / lobe[0]
 
 
 def _hann(points: int) -> Array:

@@ -245,7 +245,7 @@ class Raceway:
 
         def sampled(values: Array, order: Literal[1, 3]) -> Array:
             around = np.pad(values, ((FRINGE, FRINGE), (0, 0)), "wrap")
-            found = np.asarray(map_coordinates(around, at, order=order, mode="nearest"))
+            found = map_coordinates(around, at, order=order, mode="nearest")
             return found if forwards else np.roll(found[::-1], 1, axis=0)
 
         edges = None

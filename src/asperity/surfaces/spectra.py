@@ -128,7 +128,7 @@ def autocorrelation(surface: HeightMap) -> Array:
     z = _complete(surface)
     require(z.any(), "surface", "equal heights everywhere", "a surface with roughness")
     mean = lag_products(z, len(z) // 2) / lag_pairs(len(z), z.shape[1], len(z) // 2)
-    return np.asarray(mean / mean[len(z) // 2, z.shape[1] // 2])
+    return mean / mean[len(z) // 2, z.shape[1] // 2]
 
 
 def lag_pairs(rows: int, columns: int, reach: int, pieces: int = 1) -> Array:

@@ -336,7 +336,7 @@ def survey_strip(strip: Strip, segment: int, first: int = 0, stop: int | None = 
         values |= {"al": shortest, "tr": shortest / longest}
         statistics = _statistics("S", values, (2.0 * min(strip.spacing), max(sides)))
     wavenumber = np.asarray(np.fft.rfftfreq(segment, strip.spacing[0]), dtype=np.float64)
-    return StripSurvey(statistics, wavenumber, np.asarray(densities / segments))
+    return StripSurvey(statistics, wavenumber, densities / segments)
 
 
 def _bounds(strip: Strip, first: int, stop: int, segment: int) -> list[tuple[int, int]]:

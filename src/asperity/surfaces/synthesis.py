@@ -59,13 +59,13 @@ def extend(
         return close(values, crossfade)[np.mod(index, n)]
     if how == "mirror":
         folded = np.mod(index, 2 * (n - 1))
-        return np.asarray(values[np.where(folded < n, folded, 2 * (n - 1) - folded)])
+        return values[np.where(folded < n, folded, 2 * (n - 1) - folded)]
     allowed = f"at least the run with its margins, {rows * spacing:.4g} m"
     allowed += f", from {start * spacing:.4g} m on" if start else ""
     remedy = "Set surface.continuation to 'mirror' or 'repeat', or shorten the run."
     inside = start >= 0 and start + rows <= n
     require(inside, f"length of the {what}", f"{n * spacing:.4g} m", allowed, remedy)
-    return np.asarray(values[start : start + rows])
+    return values[start : start + rows]
 
 
 def close(heights: ArrayLike, points: int) -> Array:
@@ -243,7 +243,7 @@ class AffineRange:
         scale = self.surface.longest * start_of(self.number)
         power = np.maximum(waves.stretched * scale**2, 1.0) ** (-1.0 - self.surface.hurst)
         # of wave 0 along, the opposite ones across are there
-        return np.asarray(power * np.where(waves.along > 0, 2.0, 1.0) * (scale**2 / (along * across)))
+        return power * np.where(waves.along > 0, 2.0, 1.0) * (scale**2 / (along * across))
 
     def waves(self, tile: int, across: Array) -> Waves:
         """Complex amplitudes (k, ny), m, of a tile at places across (ny,), m."""

@@ -124,7 +124,7 @@ class Tiling:
 
     def within(self, tile: int, place: Array) -> Array:
         """Places, m, from where a tile begins."""
-        return np.asarray(place - (self.start + tile * self.stride))
+        return place - (self.start + tile * self.stride)
 
     def weight(self, tile: int, place: Array) -> Array:
         """Share of a tile at places, m: their squares add up to one."""
@@ -189,7 +189,7 @@ def closed(drawn: Drawn, rows: int, across: Array) -> Array:
         waves = each.waves(0, across)[:held]
         spectrum[: len(waves)] += 0.5 * rows * waves
     spectrum[0] *= 2.0
-    return np.asarray(fft.irfft(spectrum, rows, axis=0, overwrite_x=True))
+    return fft.irfft(spectrum, rows, axis=0, overwrite_x=True)
 
 
 def fine(waves: Waves) -> Array:
@@ -217,7 +217,7 @@ def interpolated(fine: Array, place: Array, weight: Array | float = 1.0) -> Arra
     share = _kernel(first - (at - 0.5 * TAPS)) * np.broadcast_to(weight, count)[:, None]
     taps = np.mod(first, points).astype(np.int32)[:, None] + np.arange(TAPS, dtype=np.int32)
     ends = np.arange(0, TAPS * count + 1, TAPS, dtype=np.int32)
-    return np.asarray(csr_array((share.ravel(), taps.ravel(), ends), (count, len(fine))) @ fine)
+    return csr_array((share.ravel(), taps.ravel(), ends), (count, len(fine))) @ fine
 
 
 def _kernel(after: Array) -> Array:
