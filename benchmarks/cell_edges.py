@@ -25,6 +25,7 @@ its half-width a away. The row is that whose middles lie from 0.33 cells before 
 
 import argparse
 import math
+import sys
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -108,15 +109,12 @@ def kept_across(ratios, slant):
 
 
 def print_curves():
-    """Print the curves."""
+    """Print the curves, as `asperity/contact/cell_edges.txt` holds them."""
     ratios = FIRST + np.arange(KNOTS) / PER_UNIT
     slants = np.linspace(0.0, 1.0, SLANTS)[1:] ** 2
     curves = [[kept_along(ratio) for ratio in ratios], *(kept_across(ratios, slant) for slant in slants)]
     found = np.clip(curves, 0.0, 1.0)
-    text = np.array2string(
-        found.round(4), separator=", ", max_line_width=100, formatter={"float": "{:.4f}".format}
-    )
-    print(f"KEPT = np.array({text})")
+    np.savetxt(sys.stdout, found, fmt="%.4f")
 
 
 def punch(shape, spacing, middle, distance_and_normal, sharp=True):

@@ -22,6 +22,9 @@ SHAKEDOWN = "shakedown"  # stands for a number of passes: until one changes noth
 FORMS = {"plane": 1, "quadratic": 2, "quartic": 4}  # words for polynomials of these degrees
 MOST_PASSES = 100  # of running-in
 
+FilePath = str | os.PathLike[str]
+"""A path as people name it."""
+
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike as ArrayLike
 

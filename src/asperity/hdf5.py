@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from asperity.arguments import require
+from asperity.arguments import FilePath, require
 from asperity.errors import InputError
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ _REMEDY = "Copy what it refers to into one file (h5repack, nccopy), if you trust
 
 
 @contextmanager
-def opened_netcdf(path: str | os.PathLike[str], source: str, **options: Any) -> "Iterator[h5netcdf.File]":
+def opened_netcdf(path: FilePath, source: str, **options: Any) -> "Iterator[h5netcdf.File]":
     """Open a netCDF-4 file to read it, if it holds all of its data itself."""
     import h5netcdf
 
@@ -34,7 +34,7 @@ def opened_netcdf(path: str | os.PathLike[str], source: str, **options: Any) -> 
 
 
 @contextmanager
-def opened_hdf5(path: str | os.PathLike[str], source: str) -> "Iterator[h5py.File]":
+def opened_hdf5(path: FilePath, source: str) -> "Iterator[h5py.File]":
     """Open an HDF5 file of any kind to read it, if it holds all of its data itself."""
     import h5py
 
@@ -44,7 +44,7 @@ def opened_hdf5(path: str | os.PathLike[str], source: str) -> "Iterator[h5py.Fil
 
 
 @contextmanager
-def _broken_links_named(path: str | os.PathLike[str], source: str) -> Iterator[None]:
+def _broken_links_named(path: FilePath, source: str) -> Iterator[None]:
     """Name a soft link that leads nowhere where a library fails at one: the file is whole but for it."""
     import h5py
 
@@ -69,7 +69,7 @@ def _leads_nowhere(file: "h5py.File", name: str) -> bool:
     return False
 
 
-def is_hdf5(path: str | os.PathLike[str]) -> bool:
+def is_hdf5(path: FilePath) -> bool:
     """Whether a file is HDF5, by its signature, which other bytes may precede."""
     place = 0
     size = os.path.getsize(path)
@@ -82,7 +82,7 @@ def is_hdf5(path: str | os.PathLike[str]) -> bool:
     return False
 
 
-def refuse_data_elsewhere(path: str | os.PathLike[str], source: str) -> None:
+def refuse_data_elsewhere(path: FilePath, source: str) -> None:
     """Refuse an HDF5 file with data, or parts of its tree, in other files, before any of it is read.
 
     These are external links, links of kinds that a program defines, external raw storage, and virtual data
@@ -134,12 +134,12 @@ def size_unpacked(shape: Sequence[int], item_bytes: int) -> int:
     return math.prod(shape) * max(item_bytes, LEAST_ITEM)
 
 
-def most_unpacked(path: str | os.PathLike[str]) -> int:
+def most_unpacked(path: FilePath) -> int:
     """Bytes of numbers that a file may unpack to."""
     return max(SMALL, MOST_UNPACKED * os.path.getsize(path))
 
 
-def check_unpacked(path: str | os.PathLike[str], source: str, shape: Sequence[int], item_bytes: int) -> None:
+def check_unpacked(path: FilePath, source: str, shape: Sequence[int], item_bytes: int) -> None:
     """Refuse an array that would take much more memory than its file is long, before any of it is read."""
     size = size_unpacked(shape, item_bytes)
     most = most_unpacked(path)

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import io
-import os
 from collections.abc import Sequence
 from numbers import Integral
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from asperity.arguments import ArrayLike, NDArray, file_path, no_file, shown
+from asperity.arguments import ArrayLike, FilePath, NDArray, file_path, no_file, shown
 from asperity.errors import InputError, reason
 from asperity.files import is_sealed, write_bytes
 from asperity.hdf5 import MOST_UNPACKED, SIGNATURE, most_unpacked, opened_hdf5, size_unpacked
@@ -46,7 +45,7 @@ def variable(
     return xarray.Variable(dims, values, {"units": units, "long_name": long_name, **attrs})
 
 
-def save(tree: xarray.DataTree, path: str | os.PathLike[str]) -> Path:
+def save(tree: xarray.DataTree, path: FilePath) -> Path:
     """Write a result to one netCDF-4 file, completely or not at all.
 
     Parameters
@@ -89,7 +88,7 @@ def _storable(tree: xarray.DataTree) -> xarray.DataTree:
     return tree
 
 
-def read_result(path: str | os.PathLike[str]) -> xarray.DataTree:
+def read_result(path: FilePath) -> xarray.DataTree:
     """Read a result that a run has written, a ``run.nc`` or the folder of one, to memory."""
     path = file_path("result", path, "the path of a run.nc, or of the folder that holds one")
     if no_file(path) == "a folder":
@@ -188,12 +187,12 @@ def groups_of_netcdf(path: str, whole: bool) -> Answer:
     return groups, arrays
 
 
-def attributes_of(path: str | os.PathLike[str]) -> dict[str, Any]:
+def attributes_of(path: FilePath) -> dict[str, Any]:
     """Read what a result or a study says of all of itself: its case, for instance."""
     return {str(name): value for name, value in _opened_apart(Path(path), whole=False).attrs.items()}
 
 
-def case_text(path: str | os.PathLike[str]) -> str:
+def case_text(path: FilePath) -> str:
     """Read the case, in TOML, that a ``run.nc`` belongs to, and nothing else of it."""
     found = attributes_of(path)
     if provenance.CASE.name not in found:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import os
 import warnings
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from asperity.arguments import shown
+from asperity.arguments import FilePath, shown
 from asperity.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
@@ -21,7 +20,7 @@ C = TypeVar("C", bound="AnyCase")
 
 
 def run(
-    case: str | os.PathLike[str] | Mapping[str, Any] | AnyCase | ReadyCase,
+    case: FilePath | Mapping[str, Any] | AnyCase | ReadyCase,
     progress: Progress | None = None,
     *,
     converge: bool = False,
@@ -103,7 +102,7 @@ def _warn_again(caught: Iterable[warnings.WarningMessage]) -> None:
         warnings.warn_explicit(message.message, message.category, message.filename, message.lineno)
 
 
-def open_result(path: str | os.PathLike[str]) -> Result:
+def open_result(path: FilePath) -> Result:
     """Open the result of a run again.
 
     Parameters

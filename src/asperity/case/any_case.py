@@ -1,6 +1,5 @@
 """The case of any kind: its keys in and out of TOML, other values for some; and what computes it."""
 
-import os
 import re
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -10,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, NoReturn, Protocol, Self, runtime_checkable
 
 from asperity import files
-from asperity.arguments import file_path, nearest, require, shown
+from asperity.arguments import FilePath, file_path, nearest, require, shown
 from asperity.case.documented import allowed_in
 from asperity.case.form import Inner, Section, content, described_value, holds_memory
 from asperity.case.ready_lists import NamedChanges
@@ -358,7 +357,7 @@ class AnyCase(Section):
         """
         return toml_text({"kind": self.kind, **in_toml(self, in_memory=refused)})
 
-    def save(self, path: str | os.PathLike[str]) -> Path:
+    def save(self, path: FilePath) -> Path:
         """Write the case as a case file, with the maps and lines that stand in memory beside it.
 
         Each of them is an array of heights in a file of its own, as ``case_surface_file.npy``, which the case

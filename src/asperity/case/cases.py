@@ -1,14 +1,13 @@
 """Cases of any kind: from files, texts and mappings; and as a commented text."""
 
 import importlib
-import os
 from collections.abc import Mapping, Sequence
 from importlib import resources
 from pathlib import Path
 from typing import Any
 
 from asperity import extensions
-from asperity.arguments import file_path, nearest, require, shown
+from asperity.arguments import FilePath, file_path, nearest, require, shown
 from asperity.case import PRESETS, kinds, scene, toml
 from asperity.case.any_case import AnyCase, commented, in_toml
 from asperity.errors import CaseError, InputError
@@ -23,7 +22,7 @@ _HEAD = """\
 """
 
 
-def read_case(path: str | os.PathLike[str]) -> AnyCase:
+def read_case(path: FilePath) -> AnyCase:
     """Read a case file, as an object whose keys are in SI.
 
     Parameters
@@ -89,9 +88,7 @@ def keys_and_origin(case: object) -> tuple[dict[str, Any], Origin]:
     return toml.read_toml(toml.read_definition(path, "case", remedy), "case", path), Origin.file(path)
 
 
-def read_with_case(
-    path: str | os.PathLike[str], what: str, remedy: str
-) -> tuple[dict[str, Any], dict[str, Any], Origin]:
+def read_with_case(path: FilePath, what: str, remedy: str) -> tuple[dict[str, Any], dict[str, Any], Origin]:
     """Read a TOML file with a key ``case``, the path of a case, or a section with its keys.
 
     `what` the file is, and the remedy if it is missing, are for messages. Returns its other keys, and those
@@ -108,7 +105,7 @@ def read_with_case(
     raise CaseError(str(path), [str(error)])
 
 
-def parse_case(text: str, source: str | os.PathLike[str] = "case") -> AnyCase:
+def parse_case(text: str, source: FilePath = "case") -> AnyCase:
     """Read a case from its text.
 
     Parameters

@@ -1,6 +1,5 @@
 """What is rolled over, as texture: measured maps and lines, synthesised roughness, defects on top."""
 
-import os
 from collections.abc import Iterator, Mapping
 from functools import partial
 from pathlib import Path
@@ -8,7 +7,7 @@ from typing import Any, ClassVar, TypeVar, cast
 
 import numpy as np
 
-from asperity.arguments import FORMS, Array, real_array, require, shown
+from asperity.arguments import FORMS, Array, FilePath, real_array, require, shown
 from asperity.case import tables, toml
 from asperity.case.form import Section, holds_memory
 from asperity.errors import InputError
@@ -400,12 +399,12 @@ class Recipe(Section):
         return done
 
 
-def read_recipe(path: str | os.PathLike[str]) -> Recipe:
+def read_recipe(path: FilePath) -> Recipe:
     """Read a recipe from a TOML file, as ``asperity surface FILE --store recipe.toml`` writes it."""
     return Recipe.read(typed_recipe(path), Origin.file(path))
 
 
-def typed_recipe(path: str | os.PathLike[str]) -> dict[str, Any]:
+def typed_recipe(path: FilePath) -> dict[str, Any]:
     """Keys and values of a recipe as they stand in its file."""
     remedy = "Check the path, or store one with 'asperity surface FILE --store recipe.toml'."
     return toml.read_toml(toml.read_definition(path, "recipe", remedy), "recipe", path)

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from asperity import text_files
+from asperity.arguments import FilePath
 from asperity.case.form import described_value
 from asperity.errors import InputError
 
@@ -27,7 +28,7 @@ _MANY_PARTS = re.compile(
 )
 
 
-def read_definition(path: str | os.PathLike[str], what: str, remedy: str) -> str:
+def read_definition(path: FilePath, what: str, remedy: str) -> str:
     """Read the text of a case or a study that a person has written.
 
     `what` it holds, and the remedy if it is missing, are for messages.
@@ -36,7 +37,7 @@ def read_definition(path: str | os.PathLike[str], what: str, remedy: str) -> str
     return text_files.read_text(Path(path), str(path), allowed, largest=LARGEST_CASE, remedy=remedy)
 
 
-def read_toml(text: str, what: str, source: str | os.PathLike[str]) -> dict[str, Any]:
+def read_toml(text: str, what: str, source: FilePath) -> dict[str, Any]:
     """Read TOML; what the text is, and where it comes from, are for messages."""
     allowed = f"a {what} in TOML"
     text = text.replace("\r\n", "\n")

@@ -1,6 +1,5 @@
 """Waves of a bearing that were found: their table, their page, and what is said of them to programs."""
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -8,7 +7,7 @@ import numpy as np
 from asperity.cli.optimising import FILES, ToldOptimisation
 from asperity.optimising.bearing import JUDGED, OptimisedBearing
 from asperity.reporting import chart, page, panels
-from asperity.reporting.chart import Axis, Line, Panel
+from asperity.reporting.chart import Axis, Drawn, Line, Panel
 from asperity.reporting.figure import PageFigure
 from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
 from asperity.scenarios.prepared_bearing import ON
@@ -102,7 +101,7 @@ def _bands(found: OptimisedBearing) -> ReportTable:
     return table("alone", "What may be changed, and the velocity that it makes alone before, µm/s", columns)
 
 
-def _waves(found: OptimisedBearing) -> Iterator[Panel | str]:
+def _waves(found: OptimisedBearing) -> Drawn:
     """Rms of each third octave of waves per turn before and after, a colour for each part."""
     lines = list[Line]()
     every = list[float]()

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from asperity.arguments import Array, NDArray, file_path, require, shown, whole
+from asperity.arguments import Array, FilePath, NDArray, file_path, require, shown, whole
 from asperity.case import cases
 from asperity.case.any_case import AnyCase, entry_of
 from asperity.case.form import case_key
@@ -67,7 +67,7 @@ FreeKeys = Sequence[str] | Mapping[str, object] | None
 
 
 def fit(
-    case: str | os.PathLike[str] | Mapping[str, Any] | AnyCase,
+    case: FilePath | Mapping[str, Any] | AnyCase,
     measured: object = None,
     free: FreeKeys = None,
     progress: Progress | None = None,

@@ -1,6 +1,5 @@
 """What an optimisation asks: a quantity of a case, limits, and the texture by its one-third octaves."""
 
-import os
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
@@ -9,7 +8,7 @@ from typing import TypeVar
 import numpy as np
 from xarray import DataTree
 
-from asperity.arguments import Array, NDArray
+from asperity.arguments import Array, FilePath, NDArray
 from asperity.case import any_case, cases, form, rolled_over, scene
 from asperity.case.speed import refuse_course
 from asperity.case.surface import DEFECTS, LENGTH, LEVEL, Surface
@@ -318,7 +317,7 @@ def _for_each(name: str, values: tuple[float, ...] | None, otherwise: Array) -> 
     return np.broadcast_to(np.array(values), otherwise.shape)
 
 
-def load_aim(path: str | os.PathLike[str]) -> tuple[any_case.AnyCase, form.Section]:
+def load_aim(path: FilePath) -> tuple[any_case.AnyCase, form.Section]:
     """Read a case, and what its texture shall be, from TOML: ``case``, a path or a section, and its aim."""
     remedy = "Check the path, or write one with 'asperity new optimisation > optimisation.toml'."
     keys, base, origin = cases.read_with_case(path, "optimisation", remedy)

@@ -1,14 +1,13 @@
 """Optimising the texture of a case: from the case and an aim to textures that were rolled over."""
 
 import itertools
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from asperity.arguments import Array
+from asperity.arguments import Array, FilePath
 from asperity.case import cases, form, scene
 from asperity.case.any_case import AnyCase
 from asperity.errors import InputError, PhysicsWarning
@@ -161,7 +160,7 @@ class Optimised:
 
 
 def optimise(
-    case: str | os.PathLike[str] | Mapping[str, Any] | AnyCase,
+    case: FilePath | Mapping[str, Any] | AnyCase,
     progress: Progress | None = None,
     **aim: Any,
 ) -> "Optimised | OptimisedBearing":

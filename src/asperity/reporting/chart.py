@@ -1,6 +1,6 @@
 """A figure as numbers: panels with axes and marks, which the page and matplotlib draw alike."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import cycle
 from typing import Any
@@ -245,6 +245,10 @@ class Panel:
     beside: bool = False  # in one row with the panel before, where the page is wide enough
     share: float = 1.0  # of the width of its row
     plain: bool = False  # a drawing: no grid, and no axis without a label
+
+
+Drawn = Iterator[Panel | str]
+"""What a figure yields: its panels, and sentences of its caption."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,7 +7,7 @@ import numpy as np
 import xarray
 
 from asperity.reporting import chart, data, headline, page, panels, tables
-from asperity.reporting.chart import INK, MUTED, Axis, Flags, Line, Numbers, Panel
+from asperity.reporting.chart import INK, MUTED, Axis, Drawn, Flags, Line, Numbers, Panel
 from asperity.reporting.comparison import DEVIATION, MAIN, OF_CONTACT, UNLIKE_RUNS, ComparedRuns
 from asperity.reporting.figure import PageFigure
 from asperity.reporting.tables import Cell, ReportTable, in_digits, number_cells, text_cells
@@ -160,7 +160,7 @@ def _of_run(of: ComparedRuns, number: int, x: Numbers, y: Numbers, marker: str =
     return Line(x, y, of.names[number], RUN_COLOURS[number], dashes, 1.6, marker)
 
 
-def _level(of: ComparedRuns, name: str) -> Iterator[Panel | str]:
+def _level(of: ComparedRuns, name: str) -> Drawn:
     """A level of all runs by their first law, and the differences to the first run.
 
     Of two runs the differences of all laws are drawn, in their looks; of more runs those of the first law.
@@ -199,7 +199,7 @@ def _level(of: ComparedRuns, name: str) -> Iterator[Panel | str]:
         yield f"For {drawn} {ANOTHER}: every difference holds the chance of it."
 
 
-def _contacts(of: ComparedRuns) -> Iterator[Panel | str]:
+def _contacts(of: ComparedRuns) -> Drawn:
     """Stiffness of all runs over the approach, and their filters at the working approach."""
     table = of.table
     lines = list[Line]()

@@ -8,7 +8,7 @@ import numpy as np
 from xarray import DataTree
 
 from asperity.reporting import chart, data, panels
-from asperity.reporting.chart import BLUE, GREEN, INK, Axis, Boxes, Line, Mark, Numbers, Panel
+from asperity.reporting.chart import BLUE, GREEN, INK, Axis, Boxes, Drawn, Line, Mark, Numbers, Panel
 from asperity.reporting.figure import Lines, Of, Series, field, figure
 from asperity.reporting.texture_figures import map_panel
 from asperity.schema import Entry, contact, rolling
@@ -44,7 +44,7 @@ def _outline(tree: DataTree, x: Numbers, y: Numbers) -> list[Line]:
 
 
 @figure("Pressure at the working load", Of(contact.PX, "x"), field(contact.PRESSURE, contact.PY, "p"))
-def contact_pressure(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+def contact_pressure(tree: DataTree, lines: Lines) -> Drawn:
     """Pressure and gap at the working load, with Hertz's contact outlined."""
     x = lines.at
     y = data.values(tree, contact.PY)
@@ -103,7 +103,7 @@ _CURVES = (
     Of(contact.FORCE),
     *(Of(entry, optional=True) for entry in _CURVES),
 )
-def contact_force(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+def contact_force(tree: DataTree, lines: Lines) -> Drawn:
     """Contact force and contact stiffness against the approach, with their spread and Hertz's."""
     rough = any(np.nanmax(series.values) > 0 for series in lines.of(contact.FORCE_STD))
     size, symbol = data.force_unit(float(np.nanmax(data.values(tree, contact.FORCE))))
@@ -228,7 +228,7 @@ def _level(ratio: Numbers) -> Numbers:
     Of(contact.WAVENUMBER),
     *_of_states(*contact.FILTERS, contact.FILTER_SIGNED, contact.FILTER_COHERENCE, contact.FILTER_THEORY),
 )
-def contact_filter(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+def contact_filter(tree: DataTree, lines: Lines) -> Drawn:
     """A filter as estimated (dots), as fitted (wide) and as applied (thin), and what theory says (dashed).
 
     Over wavenumbers above zero, shaded where the texture excites nothing.

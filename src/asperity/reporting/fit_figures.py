@@ -1,12 +1,12 @@
 """Figures of a fit: what was measured, and what a case predicts before and after."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from asperity.reporting import chart, panels
-from asperity.reporting.chart import Area, Axis, Line, Numbers, Panel
+from asperity.reporting.chart import Area, Axis, Drawn, Line, Numbers, Panel
 
 MOST_PANELS = 8
 """Measurements that are drawn; the CSV file has all."""
@@ -56,7 +56,7 @@ class Compared:
         return self.measured * 10.0 ** (-by / self.decade), self.measured * 10.0 ** (by / self.decade)
 
 
-def fit_figure(found: Sequence[Compared], *, stated: bool) -> Iterator[Panel | str]:
+def fit_figure(found: Sequence[Compared], *, stated: bool) -> Drawn:
     """Panels of measurements, each with what is predicted before and after."""
     for each in found[:MOST_PANELS]:
         marker = "o" if len(each.at) <= 60 else ""

@@ -1,7 +1,6 @@
 """Sound pressure beside the track while a vehicle passes, from its sound power and its contact force."""
 
 import io
-import os
 import re
 import wave
 from collections.abc import Sequence
@@ -15,7 +14,7 @@ from scipy.signal import resample
 from scipy.signal.windows import tukey
 from xarray import DataArray, DataTree
 
-from asperity.arguments import Array, file_path, shown
+from asperity.arguments import Array, FilePath, file_path, shown
 from asperity.errors import InputError
 from asperity.files import together, write_bytes
 from asperity.schema.rolling import CONTACT, CONTACT_FORCE, LAW, SPEED, TIME
@@ -132,9 +131,7 @@ class Sound:
         return float(np.sqrt(np.mean(irfft(gain * rfft(self.samples), n) ** 2)))
 
 
-def listen(
-    result: DataTree, path: str | os.PathLike[str], *, what: str | None = None, matched: bool = False
-) -> list[Path]:
+def listen(result: DataTree, path: FilePath, *, what: str | None = None, matched: bool = False) -> list[Path]:
     """Write what a run sounds like: a WAV file for each law and place, and a table of what they are.
 
     Parameters

@@ -10,7 +10,7 @@ import numpy as np
 import xarray
 
 from asperity.reporting import chart, data, panels
-from asperity.reporting.chart import INK, Axis, Boxes, Line, Mark, Numbers, Panel, sequence_styles
+from asperity.reporting.chart import INK, Axis, Boxes, Drawn, Line, Mark, Numbers, Panel, sequence_styles
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT, FORCE_LEVEL, LAW, START_SHARE
 from asperity.spectra import nominal_length, say_little
 from asperity.written_numbers import capital
@@ -38,7 +38,7 @@ def _shades(table: xarray.Dataset) -> list[Mark]:
     return panels.doubtful_boxes(table[BAND.name].values, little.any(others).values)
 
 
-def ensemble_figure(bands: xarray.Dataset, looks: Looks) -> Iterator[Panel | str]:
+def ensemble_figure(bands: xarray.Dataset, looks: Looks) -> Drawn:
     """Force level of each law, mean and band, a panel for each value of the other keys.
 
     The dataset is from `asperity.prediction_band`, whose ``meaning`` is the caption; looks of lines by law.
@@ -70,7 +70,7 @@ def ensemble_figure(bands: xarray.Dataset, looks: Looks) -> Iterator[Panel | str
 
 def optimised_figure(
     columns: Mapping[str, Numbers], heard: str, units: str, colours: Mapping[str, str]
-) -> Iterator[Panel | str]:
+) -> Drawn:
     """The texture above, and below what is heard of it in each band, of each law that has a colour.
 
     Columns by their titles, each by one-third octave of wavelength (b,), begin with these, the frequencies
@@ -111,7 +111,7 @@ SPREAD = 20.0
 
 def key_figures(
     mean: xarray.Dataset, scatter: xarray.Dataset | None, key: str, looks: Looks, names: Sequence[str]
-) -> Iterator[tuple[str, str, Iterator[Panel | str]]]:
+) -> Iterator[tuple[str, str, Drawn]]:
     """Figures of a swept key, each with its name and title: one for each thing that its lines stand for.
 
     So that no legend mixes laws, what radiates, and values of keys; the parameters are those of `key_figure`.
@@ -141,7 +141,7 @@ def _told_apart(table: xarray.Dataset, name: str, key: str) -> str:
 
 def key_figure(
     mean: xarray.Dataset, scatter: xarray.Dataset | None, key: str, looks: Looks, names: Sequence[str]
-) -> Iterator[Panel | str]:
+) -> Drawn:
     """What a swept key does: quantities over it.
 
     `mean` and `scatter` are tables of a study without its seeds, if it swept any: `scatter` holds standard

@@ -1,6 +1,6 @@
 """Figures of surfaces: maps, heights, paths, spectra; of results, and of what a surface file holds."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from itertools import cycle
 from typing import Any
 
@@ -8,7 +8,19 @@ import numpy as np
 from xarray import DataTree
 
 from asperity.reporting import chart, data, panels
-from asperity.reporting.chart import BLUE, INK, MUTED, VERMILLION, Axis, Chart, Line, Mark, Numbers, Panel
+from asperity.reporting.chart import (
+    BLUE,
+    INK,
+    MUTED,
+    VERMILLION,
+    Axis,
+    Chart,
+    Drawn,
+    Line,
+    Mark,
+    Numbers,
+    Panel,
+)
 from asperity.reporting.data import length_unit
 from asperity.reporting.figure import Lines, Of, field, figure
 from asperity.schema import contact
@@ -136,7 +148,7 @@ def _between(tree: DataTree) -> str:
 
 
 @figure("Texture of the samples", Of(contact.MAP_X, "x"), field(contact.SAMPLE_HEIGHTS, contact.MAP_Y, "z"))
-def texture_sample(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+def texture_sample(tree: DataTree, lines: Lines) -> Drawn:
     """Map of the first sample, and how its heights are distributed."""
     x = lines.at
     y = data.values(tree, contact.MAP_Y)
@@ -159,7 +171,7 @@ def texture_sample(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
 
 
 @figure("Texture of the path", Of(contact.DISTANCE, "x"), Of(contact.LINE, "z"), stretches=STRETCHES)
-def texture_path(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+def texture_path(tree: DataTree, lines: Lines) -> Drawn:
     """Strip of the path, and its middle line, every point; a path given as a line has the line alone."""
     above = ""
     if data.present(tree, contact.PATH_HEIGHTS):
@@ -187,7 +199,7 @@ def texture_path(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     Of(contact.PSD_SAMPLE, "PSD of samples, mean", "samples, mean", LOOKS[0], optional=True),
     Of(contact.PSD_PATH, "PSD of path", "path", LOOKS[1], optional=True),
 )
-def texture_psd(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+def texture_psd(tree: DataTree, lines: Lines) -> Drawn:
     """Spectra of samples and path in the rolling direction, and the length of the contact."""
     drawn = [
         psd_line(lines.at, s.values, s.label, *s.look, 1.5)
@@ -221,7 +233,7 @@ STRETCH = 10.0
     Of(contact.LINE_UNTOUCHED, "before running-in"),
     Of(contact.LINE, "after running-in"),
 )
-def running_in(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+def running_in(tree: DataTree, lines: Lines) -> Drawn:
     """The line before and after running-in, around its deepest mark."""
     before, after = (series.values for series in lines.lines)
     lowering = before - after

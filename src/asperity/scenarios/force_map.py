@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, finite_array, one_of, require
+from asperity.arguments import Array, ArrayLike, FilePath, finite_array, one_of, require
 from asperity.case.any_case import AnyCase, function_named
 from asperity.case.cases import as_case
 from asperity.errors import InputError
@@ -41,7 +41,7 @@ def law_of(case: AnyCase, name: str | None = None, *, ring: str = "outer") -> La
 
 
 def force_map(
-    contact: Law | AnyCase | Mapping[str, Any] | str | os.PathLike[str],
+    contact: Law | AnyCase | Mapping[str, Any] | FilePath,
     positions: ArrayLike,
     approaches: ArrayLike,
     *,
@@ -107,7 +107,7 @@ def _rising(what: str, values: ArrayLike) -> Array:
     return found
 
 
-def write_force_map(found: DataArray, path: str | os.PathLike[str]) -> Path:
+def write_force_map(found: DataArray, path: FilePath) -> Path:
     """Write a map as netCDF, or as a CSV file of one heading and a matrix; completely or not at all.
 
     Parameters

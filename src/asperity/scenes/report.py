@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import xarray
 
 from asperity import extensions
-from asperity.arguments import file_path, require, shown
+from asperity.arguments import FilePath, file_path, require, shown
 from asperity.errors import InputError, printable
 from asperity.files import together, write_bytes
 from asperity.reporting import contact_figures, data, headline, tables, texture_figures
@@ -149,7 +149,7 @@ def page_of(tree: xarray.DataTree, *, summary: bool = False) -> str:
     return page(tree, sections_of(tree, chapters()), answers_of(tree, chapters()), summary=summary)
 
 
-def report(result: xarray.DataTree, path: str | os.PathLike[str], figures: str | None = None) -> Path:
+def report(result: xarray.DataTree, path: FilePath, figures: str | None = None) -> Path:
     """Write the report of a run: one page, and the numbers (CSV) of each of its figures.
 
     Parameters
@@ -299,9 +299,9 @@ def _numbers(tree: xarray.DataTree) -> str:
 
 
 def compare(
-    *results: xarray.DataTree | str | os.PathLike[str],
+    *results: xarray.DataTree | FilePath,
     names: Sequence[str] | None = None,
-    path: str | os.PathLike[str] | None = None,
+    path: FilePath | None = None,
 ) -> xarray.Dataset:
     """Compare runs: what differs in their cases, levels, force, loss of contact, stiffness and filters.
 
@@ -354,7 +354,7 @@ def compare(
 
 
 def comparison_of(
-    results: Sequence[xarray.DataTree | str | os.PathLike[str]], names: Sequence[str] | None = None
+    results: Sequence[xarray.DataTree | FilePath], names: Sequence[str] | None = None
 ) -> ComparedRuns:
     """Read runs, name them so that they can be told apart, and compare all levels over bands."""
     allowed = f"two to {MOST_RUNS} runs"
@@ -394,7 +394,7 @@ def _place(result: object, number: int) -> tuple[str, ...]:
     return path.parent.parts if path.name == "run.nc" else (*path.parent.parts, path.stem or "run")
 
 
-def write_comparison(of: ComparedRuns, path: str | os.PathLike[str]) -> tuple[Path, Path]:
+def write_comparison(of: ComparedRuns, path: FilePath) -> tuple[Path, Path]:
     """Write page and table of a comparison; return where they are."""
     target = _page_in("comparison", path)
     rows = target.with_suffix(".csv")

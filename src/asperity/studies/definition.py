@@ -2,7 +2,6 @@
 
 import json
 import math
-import os
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -12,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from asperity.arguments import require, shown
+from asperity.arguments import FilePath, require, shown
 from asperity.case import cases, form, toml
 from asperity.case.any_case import AnyCase, entry_of
 from asperity.case.form import case_key, content, file_digest
@@ -179,7 +178,7 @@ class Study:
         return case
 
 
-def load_study(path: str | os.PathLike[str]) -> Study:
+def load_study(path: FilePath) -> Study:
     """Read a study, with all its values, from a TOML file: ``case``, a path or a section, and ``[sweep]``.
 
     All errors of keys and values are reported at once.
@@ -192,7 +191,7 @@ def load_study(path: str | os.PathLike[str]) -> Study:
     return _checked(base, origin, data.get("sweep", {}), path)
 
 
-def study_of(case: str | os.PathLike[str] | Mapping[str, Any] | AnyCase, sweep: Mapping[str, Any]) -> Study:
+def study_of(case: FilePath | Mapping[str, Any] | AnyCase, sweep: Mapping[str, Any]) -> Study:
     """Make a study of a case.
 
     Parameters
@@ -219,7 +218,7 @@ def study_of(case: str | os.PathLike[str] | Mapping[str, Any] | AnyCase, sweep: 
     return _checked(*cases.keys_and_origin(case), sweep, "study")
 
 
-def _checked(data: dict[str, Any], origin: Origin, sweep: object, source: str | os.PathLike[str]) -> Study:
+def _checked(data: dict[str, Any], origin: Origin, sweep: object, source: FilePath) -> Study:
     """Read the swept values, or say all that is wrong with them."""
     if not isinstance(sweep, Mapping) or not sweep:
         received = "nothing" if not sweep else shown(sweep)

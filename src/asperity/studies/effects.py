@@ -1,7 +1,6 @@
 """What each variant of a case does to a level: its difference to the case as it is, and how sure that is."""
 
 import json
-import os
 from collections.abc import Collection, Mapping
 from typing import Any
 
@@ -9,7 +8,7 @@ import numpy as np
 import xarray
 from xarray import DataTree
 
-from asperity.arguments import NDArray, one_of, require, shown
+from asperity.arguments import FilePath, NDArray, one_of, require, shown
 from asperity.case import any_case, cases
 from asperity.errors import InputError
 from asperity.progress import Progress
@@ -34,7 +33,7 @@ def _named_changes(case: any_case.AnyCase) -> dict[str, Mapping[str, Any]]:
 
 
 def what_helps(
-    case: str | os.PathLike[str] | Mapping[str, Any] | any_case.AnyCase,
+    case: FilePath | Mapping[str, Any] | any_case.AnyCase,
     sweep: Mapping[str, Any] | None = None,
 ) -> Study:
     """Make the study that answers what makes a case over a track, or a ball bearing, quieter.

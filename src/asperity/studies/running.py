@@ -13,7 +13,7 @@ from contextlib import closing, contextmanager, nullcontext, suppress
 from multiprocessing.connection import Connection
 from typing import TYPE_CHECKING, Any
 
-from asperity.arguments import require, shown, whole
+from asperity.arguments import FilePath, require, shown, whole
 from asperity.case.any_case import AnyCase
 from asperity.errors import ComputationError, InputError
 from asperity.interrupts import no_interrupt_for_children
@@ -143,13 +143,13 @@ def _end_with(watched: Connection) -> None:
 
 
 def study(
-    definition: str | os.PathLike[str] | Mapping[str, Any] | Study | AnyCase,
+    definition: FilePath | Mapping[str, Any] | Study | AnyCase,
     sweep: Mapping[str, Any] | None = None,
     *,
     executor: futures.Executor | None = None,
     workers: int | None = None,
     progress: Progress | None = None,
-    signals: "str | os.PathLike[str] | SignalSet | None" = None,
+    signals: "FilePath | SignalSet | None" = None,
 ) -> "xarray.Dataset":
     """Compute a case for every combination of the values of some keys.
 
@@ -240,7 +240,7 @@ def study(
 
 
 def _planned(
-    definition: str | os.PathLike[str] | Mapping[str, Any] | Study | AnyCase, sweep: Mapping[str, Any] | None
+    definition: FilePath | Mapping[str, Any] | Study | AnyCase, sweep: Mapping[str, Any] | None
 ) -> Study:
     if isinstance(definition, Study):
         allowed = "a case with keys, or a study alone"

@@ -1,7 +1,6 @@
 """A folder of labelled signals, one file for each member of a study of bearings: for those who classify."""
 
 import io
-import os
 import re
 import warnings
 from array import array
@@ -21,6 +20,7 @@ from asperity import files
 from asperity.arguments import (
     Array,
     ArrayLike,
+    FilePath,
     NDArray,
     file_path,
     finite_array,
@@ -111,9 +111,9 @@ class SignalSet:
     'labels.csv'
     """
 
-    folder: str | os.PathLike[str]
+    folder: FilePath
     format: str = "nc"
-    path: str | os.PathLike[str] | None = None
+    path: FilePath | None = None
     path_rate: str | float | None = None
     noise: str | None = None
 
@@ -166,7 +166,7 @@ class SignalSet:
         return {"below" if is_level else "rms": found}
 
     @classmethod
-    def of(cls, asked: "str | os.PathLike[str] | SignalSet", members: Iterable[Member]) -> "SignalSet":
+    def of(cls, asked: "FilePath | SignalSet", members: Iterable[Member]) -> "SignalSet":
         """Take signals that are asked for; refuse cases without any, and a folder that cannot be written."""
         found = asked if isinstance(asked, cls) else cls(asked)  # type: ignore[arg-type]
         for case in (member.case for member in members if member.case):

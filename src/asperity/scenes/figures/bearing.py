@@ -1,6 +1,5 @@
 """A ball bearing on its page: how it carries its load, what moves, how quiet it is, which part is heard."""
 
-from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -72,7 +71,7 @@ def _round(radius: float, x: Any = 0.0, y: Any = 0.0, **look: Any) -> chart.Shap
     Of(bearing.AZIMUTH),
     Of(bearing.BALL_LOAD, "load on the {ring} ring"),
 )
-def load_zone(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
+def load_zone(tree: DataTree, lines: Lines) -> chart.Drawn:
     """The bearing from the side, each ball as dark as it is loaded, and its load outside."""
     azimuth, _, outer = (series.values for series in lines.lines)
     lengths = (bearing.BALL_DIAMETER, bearing.PITCH_DIAMETER, bearing.CONTACT_ANGLE)
@@ -158,7 +157,7 @@ def _outer(contacts: list[int]) -> int:
     Of(rolling.CONTACT_FORCE, "outer force", "on the outer ring", one={rolling.CONTACT.name: _outer}),
     rows=_one_turn,
 )
-def ball_turn(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
+def ball_turn(tree: DataTree, lines: Lines) -> chart.Drawn:
     """Forces over the azimuth, and behind them those at rest."""
     degrees = _degrees(lines.at)
     places = _degrees(data.values(tree, bearing.AZIMUTH).ravel())
@@ -187,7 +186,7 @@ def ball_turn(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
     Of(bearing.ALONG_ROLLER),
     Of(bearing.LINE_PRESSURE, "{ring} ring"),
 )
-def along_roller(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
+def along_roller(tree: DataTree, lines: Lines) -> chart.Drawn:
     """Pressures of the slices at rest, on both rings."""
     drawn = tuple(
         chart.Line(1e3 * lines.at, each.values / 1e9, each.label, *RINGS[ring], 1.4)
@@ -207,7 +206,7 @@ def along_roller(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
     Of(bearing.FILM_THICKNESS, "{ring} ring, in the middle"),
     Of(bearing.LEAST_FILM, "{ring} ring, least"),
 )
-def ball_films(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
+def ball_films(tree: DataTree, lines: Lines) -> chart.Drawn:
     """Films of all contacts at rest over the azimuth, and three times the roughness that they are to hide."""
     places = _degrees(data.values(tree, bearing.AZIMUTH).ravel())
     order = np.argsort(places)
@@ -282,7 +281,7 @@ def _some_turns(tree: DataTree) -> slice:
     Of(bearing.RING_ACCELERATION, "{law}"),
     rows=_some_turns,
 )
-def ring_acceleration(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
+def ring_acceleration(tree: DataTree, lines: Lines) -> chart.Drawn:
     """Acceleration of all laws over a few turns."""
     axis, unit = panels.time_axis(tree, lines.at)
     drawn = [replace(each, width=0.8) for each in panels.styled(tree, lines.at / unit, lines.lines)]
@@ -318,7 +317,7 @@ def _at_fastest(tree: DataTree) -> str:
 
 
 @figure("Spectrum of the radial velocity", Of(spectra.FREQUENCY), Of(bearing.VELOCITY_AMPLITUDE, "{law}"))
-def velocity_spectrum(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
+def velocity_spectrum(tree: DataTree, lines: Lines) -> chart.Drawn:
     """Highest lines in stretches of an octave, in dB, and the tones of the parts."""
     kept = lines.at >= LOWEST
     frequency = lines.at[kept]
@@ -339,7 +338,7 @@ def velocity_spectrum(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | st
 
 
 @figure("Envelope spectrum", Of(bearing.ENVELOPE_FREQUENCY), Of(bearing.ENVELOPE, "{law}"))
-def envelope_spectrum(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
+def envelope_spectrum(tree: DataTree, lines: Lines) -> chart.Drawn:
     """Envelope of all laws, and what of it the main law's lines are."""
     highest = float(lines.at[-1])
     main = _main(tree)

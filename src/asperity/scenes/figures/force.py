@@ -8,7 +8,7 @@ import numpy as np
 from xarray import DataTree
 
 from asperity.reporting import chart, data, panels
-from asperity.reporting.chart import Panel
+from asperity.reporting.chart import Drawn, Panel
 from asperity.reporting.figure import Lines, Of, Series, figure
 from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
 from asperity.scenes import schema
@@ -47,7 +47,7 @@ def _differences(tree: DataTree) -> Iterator[Series]:
     _differences,
     REFERENCE_LEVEL,
 )
-def force_bands(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+def force_bands(tree: DataTree, lines: Lines) -> Drawn:
     """Levels in one-third octaves, and below them the differences to the linear laws and to the reference."""
     levels, reference = (
         panels.styled(tree, lines.at, lines.of(entry), markers=True)
@@ -79,7 +79,7 @@ def force_bands(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
 @figure(
     "Contact force against frequency", Of(spectra.FREQUENCY), Of(spectra.FORCE_PSD, "{law}"), REFERENCE_PSD
 )
-def force_psd(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+def force_psd(tree: DataTree, lines: Lines) -> Drawn:
     """Power spectral densities over frequency, with the track's marks behind."""
     at, levels = panels.narrow_levels(tree, lines, lines.lines)
     drawn = panels.styled(tree, at, levels)
@@ -167,7 +167,7 @@ _WORDS = (
 
 
 @figure("Contact force, the whole run", Of(rolling.TIME), FORCES, stretches=STRETCHES)
-def force_envelope(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+def force_envelope(tree: DataTree, lines: Lines) -> Drawn:
     """Contact force of all laws over the whole run, every time step."""
     yield from _forces(tree, lines, width=0.9)
     count = min(STRETCHES, len(lines.at))
@@ -180,7 +180,7 @@ def force_envelope(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
 
 
 @figure("Contact force around its largest value", Of(rolling.TIME), FORCES, rows=around_peak)
-def force_peak(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+def force_peak(tree: DataTree, lines: Lines) -> Drawn:
     """Contact force of all laws around the largest one of the main law."""
     yield from _forces(tree, lines)
     force = _main_force(tree)
@@ -219,7 +219,7 @@ def _mean(tree: DataTree) -> Iterator[Series]:
 
 
 @figure("Force of each contact", Of(BAND, "band centre"), panels.products(BAND_TIME_PRODUCT), _LEVELS, _mean)
-def contact_levels(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+def contact_levels(tree: DataTree, lines: Lines) -> Drawn:
     """One-third-octave levels of the force of each contact, all or some from the first to the last."""
     every = lines.of(CONTACT_FORCE_LEVEL)
     if len(every) < 2:

@@ -193,7 +193,7 @@ LOOKS: dict[str, tuple[Any, ...]] = {  # colour, dashes, width and marker of eac
     figure.Of(schema.PASS_BY_BAND, "band centre"),
     _over_pass_by,
 )
-def pass_by_bands(tree: DataTree, lines: figure.Lines) -> Iterator[chart.Panel | str]:
+def pass_by_bands(tree: DataTree, lines: figure.Lines) -> chart.Drawn:
     """Levels by what radiates, of all of it, and those measured."""
     drawn = [chart.Line(lines.at, s.values, s.label, *LOOKS.get(s.label, ())) for s in lines.lines]
     told = [line.y for line in drawn if line.label in (WHOLE, "measured")]
@@ -255,7 +255,7 @@ _MARKED = ((chart.VERMILLION, "o"), (chart.BLUE, "s"), (chart.GREEN, "^"), (char
     _values_over(beside.DEVIATION),
     _values_over(beside.UNCERTAINTY),
 )
-def beside_measured(tree: DataTree, lines: figure.Lines) -> Iterator[chart.Panel | str]:
+def beside_measured(tree: DataTree, lines: figure.Lines) -> chart.Drawn:
     """How far each quantity is off over frequency, and how far measuring and chance explain that."""
     apart = lines.of(beside.DEVIATION)
     deviations = lines.of(beside.UNCERTAINTY)

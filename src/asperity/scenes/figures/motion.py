@@ -1,6 +1,5 @@
 """Figures of motion: of a structure, of bodies, of wheel and rail at the contact, of the rail passed by."""
 
-from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 
@@ -8,7 +7,7 @@ import numpy as np
 from xarray import DataTree
 
 from asperity.reporting import chart, data, panels
-from asperity.reporting.chart import Mark, Panel
+from asperity.reporting.chart import Drawn, Mark, Panel
 from asperity.reporting.figure import Lines, Of, Series, figure
 from asperity.reporting.headline import Answers, HeadlineNumber, deciding_bands
 from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
@@ -25,7 +24,7 @@ _SENSORS = Of(schema.ACCELERATION_PSD, "{law}, " + _AT, _AT, one={"law": min})
 
 
 @figure("Acceleration at the sensors", Of(FREQUENCY), _SENSORS)
-def acceleration_sensors(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+def acceleration_sensors(tree: DataTree, lines: Lines) -> Drawn:
     """Spectra at all sensors by the main law."""
     yield panels.level_spectrum(tree, lines, *_SPECTRUM)
     main = data.main_law(tree, schema.ACCELERATION_PSD)
@@ -39,7 +38,7 @@ def acceleration_sensors(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     Of(FREQUENCY),
     replace(_SENSORS, label="{law}", one={"sensor": lambda sensors: sensors[len(sensors) // 2]}),
 )
-def acceleration_laws(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+def acceleration_laws(tree: DataTree, lines: Lines) -> Drawn:
     """Spectra at the middle sensor by all laws."""
     yield panels.level_spectrum(tree, lines, *_SPECTRUM)
     sensors = [series.label for series in _SENSORS(tree)]
@@ -54,7 +53,7 @@ MOST_LINES = 6
 
 
 @figure("Acceleration of the bodies", Of(FREQUENCY), Of(schema.BODY_ACCELERATION_PSD, "{degree}"))
-def body_acceleration(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+def body_acceleration(tree: DataTree, lines: Lines) -> Drawn:
     """Spectra of the last degrees of freedom, and the tones of contacts that pass a place."""
     tones, told = _passing_tones(tree)
     yield panels.level_spectrum(tree, lines, *_SPECTRUM, tones, slice(-MOST_LINES, None))
@@ -123,7 +122,7 @@ def _piece(tree: DataTree) -> slice:
     ),
     rows=_piece,
 )
-def displacement(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+def displacement(tree: DataTree, lines: Lines) -> Drawn:
     """Displacement of rail and wheel at the contact and their approach, all laws, over a piece of the run."""
     time, unit = panels.time_axis(tree, lines.at)
     sleepers = track.sleeper_times(tree, lines.at[0], lines.at[-1], unit)
@@ -191,7 +190,7 @@ def _passings(tree: DataTree) -> slice:
 
 
 @figure("Rail velocity where the wheel passes", Of(rolling.TIME), _VELOCITY, rows=_passings)
-def rail_velocity(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+def rail_velocity(tree: DataTree, lines: Lines) -> Drawn:
     """Velocity of the rail at the passed points, around the passings."""
     time, unit = panels.time_axis(tree, lines.at)
     for title, found in _by_point(lines).items():
@@ -203,7 +202,7 @@ def rail_velocity(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
 
 
 @figure("Rail velocity against frequency", Of(FREQUENCY), _VELOCITY_PSD)
-def rail_velocity_psd(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+def rail_velocity_psd(tree: DataTree, lines: Lines) -> Drawn:
     """Power spectral densities of the rail's velocity at the passed points, all laws, a panel per point."""
     points = {
         title: panels.narrow_levels(tree, lines, found, schema.VELOCITY_REFERENCE**2)

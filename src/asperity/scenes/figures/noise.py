@@ -9,7 +9,7 @@ from xarray import DataTree
 
 from asperity.reference.railways import HARD
 from asperity.reporting import chart, data, headline, panels
-from asperity.reporting.chart import INK, MUTED, Axis, Line, Mark, Note, Numbers, Panel, Rules
+from asperity.reporting.chart import INK, MUTED, Axis, Drawn, Line, Mark, Note, Numbers, Panel, Rules
 from asperity.reporting.figure import Lines, Of, Series, figure
 from asperity.reporting.tables import ReportTable, in_digits, number_cells, table, text_cells
 from asperity.scenes import schema
@@ -122,7 +122,7 @@ def _standard_there(tree: DataTree) -> Iterator[Series]:
     Of(ALONE, "{single_force}, {law}", "{single_force}", optional=True),
     _standard_there,
 )
-def radiated_power_bands(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+def radiated_power_bands(tree: DataTree, lines: Lines) -> Drawn:
     """A-weighted sound power of the main law per one-third octave, by what radiates, beside CNOSSOS-EU."""
     main, (weighting,) = data.main_law(tree, OWN), (series.values for series in lines.of(BAND))
     own = [
@@ -221,7 +221,7 @@ def _passing_parts(tree: DataTree) -> list[str]:
 
 
 @figure("Level beside the track", Of(schema.PASS_BY_TIME, "time"), Of(PASSING, "{radiator}, {law}"))
-def pass_by_level(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+def pass_by_level(tree: DataTree, lines: Lines) -> Drawn:
     """Level over time: the total by each law, the parts of the main law, and when axles pass."""
     *parts, whole = _passing_parts(tree)
     main = data.main_law(tree, PASSING)

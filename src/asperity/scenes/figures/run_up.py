@@ -1,6 +1,6 @@
 """A run-up on its page: lines over orders, over speed and frequency, and what follows the speed or stays."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 
 import numpy as np
 from xarray import DataTree
@@ -33,7 +33,7 @@ def _orders(tree: DataTree) -> list[tuple[str, float]]:
 
 
 @figure("Order spectrum", Of(bearing.ORDER), Of(bearing.ORDER_AMPLITUDE, "{law}"))
-def order_spectrum(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
+def order_spectrum(tree: DataTree, lines: Lines) -> chart.Drawn:
     """Lines of the acceleration over angle, up to some multiples of the tones."""
     orders = _orders(tree)
     highest = min((MULTIPLES + 0.5) * max(order for _, order in orders), float(lines.at[-1]))
@@ -69,7 +69,7 @@ def _by_speed(tree: DataTree) -> Iterable[Series]:
 
 
 @figure("Run-up", Of(bearing.RUN_UP_FREQUENCY), _by_speed)
-def run_up_map(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
+def run_up_map(tree: DataTree, lines: Lines) -> chart.Drawn:
     """Level of the lines in colour, over frequency and speed; orders lie on straight lines."""
     speed = 60.0 * data.values(tree, bearing.RUN_UP_SPEED)
     levels = _level(data.values(tree, bearing.RUN_UP_AMPLITUDE))
@@ -97,7 +97,7 @@ def run_up_map(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
 
 
 @figure("What follows the speed", Of(bearing.FOLLOWING_ORDER), Of(bearing.FOLLOWS, "follows the speed"))
-def follows_speed(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
+def follows_speed(tree: DataTree, lines: Lines) -> chart.Drawn:
     """Excitation over orders."""
     level = _level(lines.lines[0].values)
     along = chart.Axis("order, events in a turn", float(lines.at[0]), float(lines.at[-1]), log=True)
@@ -112,7 +112,7 @@ def follows_speed(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
 
 
 @figure("What stays at its frequency", Of(bearing.STAYING_FREQUENCY), Of(bearing.STAYS, "stays"))
-def stays_at_frequency(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
+def stays_at_frequency(tree: DataTree, lines: Lines) -> chart.Drawn:
     """Resonances over frequency."""
     level = np.asarray(20.0 * np.log10(lines.lines[0].values))
     drawn = chart.Line(lines.at, level, "stays at its frequency", chart.VERMILLION, (), 1.4)

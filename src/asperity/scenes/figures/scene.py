@@ -7,7 +7,20 @@ import numpy as np
 from xarray import DataTree
 
 from asperity.reporting import data
-from asperity.reporting.chart import BLUE, GRID, INK, MUTED, VERMILLION, Axis, Line, Mark, Note, Panel, Shape
+from asperity.reporting.chart import (
+    BLUE,
+    GRID,
+    INK,
+    MUTED,
+    VERMILLION,
+    Axis,
+    Drawn,
+    Line,
+    Mark,
+    Note,
+    Panel,
+    Shape,
+)
 from asperity.reporting.figure import Lines, Series, figure
 from asperity.scenes.figures.track import sleepers_between
 from asperity.scenes.schema import ROLLING_POINT, ROLLING_SENSOR
@@ -161,7 +174,7 @@ def _patch(of: Lengths) -> list[Panel]:
 
 
 @figure("The scene", None, _columns)
-def scene(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+def scene(tree: DataTree, lines: Lines) -> Drawn:
     """What rolls over what, from the side, and the contact from above."""
     of = _lengths(lines)
     speed = data.number(tree, rolling.SPEED)

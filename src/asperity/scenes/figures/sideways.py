@@ -1,13 +1,13 @@
 """What moves sideways: lateral force, receptances and decay; friction of what creeps, and squeal."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 
 import numpy as np
 from xarray import DataTree
 
 from asperity.arguments import Array
 from asperity.reporting import data, headline, panels
-from asperity.reporting.chart import BLUE, MUTED, VERMILLION, Axis, Line, Note, Panel
+from asperity.reporting.chart import BLUE, MUTED, VERMILLION, Axis, Drawn, Line, Note, Panel
 from asperity.reporting.figure import Lines, Of, field, figure
 from asperity.reporting.tables import ReportTable, in_digits, number_cells, table, text_cells
 from asperity.reporting.texture_figures import map_panel
@@ -29,7 +29,7 @@ _DOTS = (1.5, 1.5)
     Of(spectra.FORCE_LEVEL, "vertical, {law}"),
     Of(schema.VERTICAL_FORCE_CHANGE),
 )
-def lateral_force(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+def lateral_force(tree: DataTree, lines: Lines) -> Drawn:
     """Lateral force of each law per one-third octave, the vertical one of the main law, and friction."""
     vertical = lines.of(spectra.FORCE_LEVEL, law=data.main_law(tree, FORCE))
     friction = np.full(len(lines.at), 20.0 * np.log10(data.number(tree, schema.SLIP_FORCE) or np.nan))
@@ -62,7 +62,7 @@ def lateral_force(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
 
 
 @figure("Spectrum of the lateral contact force", Of(spectra.FREQUENCY), Of(schema.LATERAL_FORCE_PSD, "{law}"))
-def lateral_spectrum(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+def lateral_spectrum(tree: DataTree, lines: Lines) -> Drawn:
     """Spectrum of the force of each law."""
     yield panels.level_spectrum(tree, lines, "PSD of the lateral force / dB re 1 N²/Hz")
     yield f"One-sided power spectral density, {panels.DRAWN}."
@@ -78,7 +78,7 @@ def lateral_spectrum(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     Of(schema.LATERAL_DECAY_RATE, "", "rail, sideways", (VERMILLION, (), 1.6), optional=True),
     over_bands(schema.MEASURED_LATERAL_DECAY_RATE, schema.LATERAL_DECAY_RATE, at=schema.SIDEWAYS_FREQUENCY),
 )
-def lateral_receptance(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+def lateral_receptance(tree: DataTree, lines: Lines) -> Drawn:
     """Receptances of rail and wheel sideways, and below them the decay along the rail."""
     along = panels.frequency_axis(float(lines.at[0]), float(lines.at[-1]))
     sizes = [series for series in lines.lines if series.units == "m/N" and np.any(series.values > 0)]
@@ -136,7 +136,7 @@ GROWTH = schema.GROWTH_RATE
     field(schema.TRACTION, schema.CREEP_Y, "q"),
     field(schema.SLIP_VELOCITY, schema.CREEP_Y, "v"),
 )
-def stick_and_slip(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+def stick_and_slip(tree: DataTree, lines: Lines) -> Drawn:
     """Traction and slip velocity of a contact, from above."""
     y = data.values(tree, schema.CREEP_Y)
     traction, slip = (data.values(tree, entry) for entry in (schema.TRACTION, schema.SLIP_VELOCITY))
@@ -162,7 +162,7 @@ def stick_and_slip(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     Of(HEAT, "heat, {law}", "{law}"),
     rows=force.around_peak,
 )
-def friction_force(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+def friction_force(tree: DataTree, lines: Lines) -> Drawn:
     """Friction force along and across, and heat, around the largest force of the main law."""
     time, unit = panels.time_axis(tree, lines.at)
     largest = max(float(np.abs(series.values).max()) for series in lines.of(FRICTION))
@@ -252,7 +252,7 @@ def creep_answers(tree: DataTree) -> headline.Answers | None:
     Of(schema.AXIAL_SHARE),
     Of(schema.SQUEAL_SHAPE, optional=True),
 )
-def squeal(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+def squeal(tree: DataTree, lines: Lines) -> Drawn:
     """Growth rate of each motion over its frequency, named by its nodal diameters where it grows."""
     growth, (squeals, of_axle) = data.values(tree, GROWTH), _growing(tree)
     growing = squeals + of_axle

@@ -1,13 +1,24 @@
 """Figures of track and wheel: receptances, decay rate, loss factors, roughness; and marks in others."""
 
-from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 from xarray import DataTree
 
 from asperity.reporting import chart, data, panels
-from asperity.reporting.chart import INK, MUTED, VERMILLION, Axis, Line, Mark, Note, Numbers, Panel, Rules
+from asperity.reporting.chart import (
+    INK,
+    MUTED,
+    VERMILLION,
+    Axis,
+    Drawn,
+    Line,
+    Mark,
+    Note,
+    Numbers,
+    Panel,
+    Rules,
+)
 from asperity.reporting.figure import Lines, Of, figure
 from asperity.scenes import schema
 from asperity.scenes.figures.measured import MEASURED, over_bands
@@ -114,7 +125,7 @@ def _along(lines: Lines) -> tuple[Axis, tuple[float, float]]:
 
 
 @figure("Receptance of rail, wheel and contact", Of(schema.TRACK_FREQUENCY), *RECEPTANCES, _MOBILITY)
-def receptance(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+def receptance(tree: DataTree, lines: Lines) -> Drawn:
     """Magnitude of the receptances, and below it their phase."""
     along, ends = _along(lines)
     magnitudes = panels.styled(tree, lines.at, [s for s in lines.lines if s.units != "rad"])
@@ -160,7 +171,7 @@ _RATES = (
 
 
 @figure("Decay rate of the track", Of(schema.TRACK_FREQUENCY), *_RATES)
-def decay_rate(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+def decay_rate(tree: DataTree, lines: Lines) -> Drawn:
     """Decay rate along the rail against frequency, with the limit that tests of vehicles ask for."""
     if not lines.of(schema.DECAY_RATE, schema.DECAY_RATE_EN15461):
         return
@@ -183,7 +194,7 @@ _FORCE = schema.LOSS_FACTOR_FORCE_ERROR
 
 
 @figure("Loss factors in time", Of(schema.TRACK_BAND, "band centre"), Of(_FORCE, "contact force, error"))
-def loss_factors(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+def loss_factors(tree: DataTree, lines: Lines) -> Drawn:
     """Errors of the force per one-third octave."""
     (error,) = (s.values for s in lines.of(_FORCE))
     edges = lines.at / panels.EDGE, lines.at * panels.EDGE, np.fmin(error, 0.0), np.fmax(error, 0.0)
@@ -235,7 +246,7 @@ def _millimetres(wavelength: float) -> str:
     Of(schema.ROUGHNESS_LEVEL, "{part}"),
     Of(schema.STATED_ROUGHNESS_LEVEL, "{part} as stated", optional=True),
 )
-def roughness(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+def roughness(tree: DataTree, lines: Lines) -> Drawn:
     """Roughness levels per one-third octave of wavelength, long waves on the left."""
     parts = lines.of(schema.ROUGHNESS_LEVEL)
     lowest = max(np.nanmax(series.values) for series in parts) - SPAN
@@ -285,7 +296,7 @@ def roughness(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     Of(schema.ORDER_FREQUENCY, "frequency"),
     Of(schema.ORDER_LEVEL, "level"),
 )
-def out_of_round(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+def out_of_round(tree: DataTree, lines: Lines) -> Drawn:
     """Level of each order of what rolls, and the frequency at which it passes the contact."""
     (level,) = (series.values for series in lines.of(schema.ORDER_LEVEL))
     (frequency,) = (series.values for series in lines.of(schema.ORDER_FREQUENCY))
