@@ -126,8 +126,8 @@ def span_of(speed: float, factor: float = 1.0) -> str:
     return f"{rounded(float(first), 5)} to {rounded(float(last), 5)}"
 
 
-def refuse_course(speed: float, where: str, remedy: str = "Give a constant speed.") -> None:
+def refuse_course(speed: float, where: str) -> None:
     """Refuse a speed, m/s, that changes where a constant one is asked for."""
     if isinstance(speed, SpeedCourse):
         received = f"a course, {rounded(speed.slowest, 5)} to {rounded(float(speed), 5)} m/s"
-        raise InputError("speed", received, f"one constant speed {where}", remedy)
+        raise InputError("speed", received, f"one constant speed {where}", "Give a constant speed.")

@@ -24,14 +24,12 @@ def frequency_axis(low: float, high: float, label: str = "frequency / Hz") -> Ax
     return Axis(label, float(low), float(high), log=True, ticks=ticks, minor=minor, linked=chart.FREQUENCY)
 
 
-def band_axis(
-    bands: Numbers, label: str = "", name: Callable[[float], str] = data.nominal_band, linked: str = ""
-) -> Axis:
+def band_axis(bands: Numbers, label: str = "", name: Callable[[float], str] = data.nominal_band) -> Axis:
     """Logarithmic axis with every one-third octave named, of frequencies unless it has another label."""
     ticks = tuple((band, name(band)) for band in bands.tolist())
     low = float(bands[0] / EDGE)
     high = float(bands[-1] * EDGE)
-    linked = linked if label else chart.FREQUENCY
+    linked = "" if label else chart.FREQUENCY
     return Axis(label or "one-third octave band / Hz", low, high, log=True, ticks=ticks, linked=linked)
 
 
@@ -88,9 +86,9 @@ def shade(left: Numbers, right: Numbers, colour: str = chart.GRID, **look: Any) 
     return chart.Boxes(left, right, -whole, whole, colour=colour, **look)
 
 
-def zero(along: str = "y", colour: str = chart.MUTED, width: float = 0.9) -> chart.Rules:
+def zero(colour: str = chart.MUTED, width: float = 0.9) -> chart.Rules:
     """A full line at zero."""
-    return chart.Rules(np.zeros(1), along, colour=colour, dashes=(), width=width)
+    return chart.Rules(np.zeros(1), "y", colour=colour, dashes=(), width=width)
 
 
 # --- bands that say little

@@ -98,9 +98,9 @@ class Tiling:
         return cls(length, blend * length, -0.5 * length)
 
     @classmethod
-    def from_zero(cls, length: float, blend: float = BLEND) -> "Tiling":
-        """Tiles, one of which is alone from somewhat before zero on, with a blend in lengths of a tile."""
-        return cls(length, blend * length, -(0.25 + 0.5 * blend) * length)
+    def from_zero(cls, length: float) -> "Tiling":
+        """Tiles, one of which is alone from somewhat before zero on."""
+        return cls(length, BLEND * length, -(0.25 + 0.5 * BLEND) * length)
 
     def __str__(self) -> str:
         return f"tiles of {self.length:.6g} m from {self.start:.6g} m"
