@@ -20,7 +20,7 @@ from asperity.running import prepare_case
 from asperity.scenarios import raceway_laws, run_time, scanned_states
 from asperity.scenarios.prepared_bearing import CELL_TIME, expected, prepare_bearing
 from asperity.scenes import computed_bearing
-from asperity.scenes.bearing import heard_group
+from asperity.scenes.bearing_heard import heard_group
 from asperity.scenes.bearing_validity import out_of_place
 from asperity.scenes.computed_bearing import bearing_rings, cage_slip, compute_bearing, thinned
 from asperity.scenes.figures.bearing import ball_turn, load_zone

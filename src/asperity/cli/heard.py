@@ -20,8 +20,8 @@ from asperity.errors import InputError
 from asperity.progress import Progress, counted, progress_bar
 from asperity.reporting.chart import Chart
 from asperity.reporting.figure import write_chart
-from asperity.scenes.bearing import HARMONICS, REACH, envelope_group
 from asperity.scenes.bearing_at_rest import tones_group
+from asperity.scenes.bearing_heard import HARMONICS, REACH, envelope_group
 from asperity.scenes.figures.bearing import envelope_spectrum, kurtogram_panel
 from asperity.schema import tree
 from asperity.studies.signals import Recorded, read_record

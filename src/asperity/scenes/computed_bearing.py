@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any, Self
 
@@ -11,11 +12,25 @@ import numpy as np
 
 from asperity.arguments import Array
 from asperity.case.ball_bearing import BearingUnderLoad
+from asperity.errors import PhysicsWarning
 from asperity.laws import Need, spec_of
 from asperity.laws.film import WithFilm
 from asperity.progress import Progress
-from asperity.rolling.bearing import BearingRings, RolledBearing, Sensor, roll_bearing
-from asperity.scenarios.prepared_bearing import RINGS, PreparedBearing, raceways_of
+from asperity.rolling.bearing import (
+    BearingRings,
+    RolledBearing,
+    Sensor,
+    roll_bearing,
+    steady_where_still,
+)
+from asperity.scenarios.prepared_bearing import (
+    ON,
+    RINGS,
+    PreparedBearing,
+    named_on,
+    prepare_bearing,
+    raceways_of,
+)
 from asperity.scenarios.raceway_laws import OnRaceway, laws_on
 from asperity.scenarios.roller_raceways import felt_by
 from asperity.scenarios.scanned_states import within_scan
@@ -30,6 +45,8 @@ DAMPED = 0.05
 """Share by which the force of a contact that is looked up may lie beside what its damping leaves of it."""
 TRIED = 0.1
 """Share of the record after which it is asked first whether forces leave what was scanned."""
+BY_PARTS = "areal"
+"""The law by which parts are run alone: it sees whole contacts, and asks for no scan."""
 FORCES = ("inner_force", "outer_force")
 """They begin and end at once, where the filter rings: none is written that is below all that were found."""
 SIGNALS = (*FORCES, "ball_motion", "inner_motion", "outer_motion", "acceleration")
@@ -41,6 +58,9 @@ class ComputedBearing(PreparedBearing, RecordedRuns):
     """A bearing that was run by its laws, before it is laid out as a result."""
 
     runs: dict[str, RolledBearing]  # records, by law, at the sampling rate of the case
+    rolled: dict[str, RolledBearing]  # the same with what rounding leaves of motion where nothing vibrates
+    # these by `BY_PARTS`, by what is kept of all that is on the parts: nothing, or what is on one of them
+    alone: dict[str, RolledBearing] = field(default_factory=dict)
 
     @property
     def bearing(self) -> BallBearing:
@@ -105,7 +125,26 @@ def compute_bearing(prepared: PreparedBearing, progress: Progress) -> ComputedBe
         signals: dict[str, Any] = {each: thinned(getattr(run, each), every) for each in SIGNALS}
         signals |= {each: np.maximum(signals[each], getattr(run, each).min()) for each in FORCES}
         found[name] = replace(run, time=run.time[::every], cage=run.cage[::every], **signals)
-    return ComputedBearing(**vars(prepared), runs=found)
+    runs = {name: steady_where_still(run) for name, run in found.items()}
+    return ComputedBearing(**vars(prepared), runs=runs, rolled=found)
+
+
+def rolled_alone(prepared: PreparedBearing, progress: Progress) -> dict[str, RolledBearing]:
+    """Run the bearing by `BY_PARTS` with what is on each part alone, and on none; none if nothing is."""
+    case = prepared.case
+    textured = [key for key in ON if getattr(case, key).given()]
+    if not textured:
+        return {}
+    names = ["perfect surfaces", *(named_on(case, key) for key in textured)]
+    if len(case.faults) > 1:
+        names[-1] = "the faults"
+    found = {}
+    for name, kept in zip(names, (None, *textured), strict=True):
+        others = case.with_(laws=[BY_PARTS], **{key: None for key in textured if key != kept})
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", PhysicsWarning)  # of the whole bearing it has been warned
+            found[name] = compute_bearing(prepare_bearing(others), progress).rolled[BY_PARTS]
+    return found
 
 
 @dataclass(frozen=True, eq=False)

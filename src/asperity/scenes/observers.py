@@ -5,7 +5,9 @@ from asperity.scenes import (
     bearing_at_rest,
     bearing_creepage,
     bearing_film,
+    bearing_heard,
     bearing_levels,
+    bearing_parts,
     creep,
     roundness,
     run_up,
@@ -23,11 +25,13 @@ OVER_STRUCTURES = (
 )
 """Of bodies that roll over structures."""
 OF_BEARINGS = (
+    bearing_heard.OBSERVER,
     bearing_at_rest.OBSERVER,
     along_rollers.OBSERVER,
     bearing_levels.OBSERVER,
     bearing_film.OBSERVER,
     bearing_creepage.OBSERVER,
     run_up.OBSERVER,
+    bearing_parts.OBSERVER,
 )
 """Of bearings."""
