@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, fields, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -299,7 +300,7 @@ class Track(track_parameters.TrackParameters):
             return (np.arange(count) + 0.5) * 0.5 * self.sleeper_spacing / count
         return (np.arange(2 * count * self.cell_bays) + 0.5) * 0.5 * self.sleeper_spacing / count
 
-    @property
+    @cached_property
     def nominal(self) -> Track:
         """The track with its constant loss factors and its table, without relaxations."""
         return replace(self, relaxations=None)
