@@ -4,56 +4,45 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import MISSING, dataclass, fields, replace
+from collections.abc import Iterator
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from asperity.arguments import Array, require
-from asperity.case import toml
 from asperity.case.any_case import LAW, AnyCase
+from asperity.case.bearing_sections import AroundKeys, BearingGeometry, FaultKeys, HousingKeys, ShaftKeys
 from asperity.case.body import DAMPING
-from asperity.case.form import Numbers, Section, name_of, section
-from asperity.case.lubricant import LubricantKeys, Oiled
+from asperity.case.form import section
+from asperity.case.loaded_bearing import DAMPED, LOAD, LOADS
+from asperity.case.lubricant import LubricantKeys
 from asperity.case.measured_tables import MeasuredBearingKeys
-from asperity.case.named_bearing import NamedBearing
 from asperity.case.ready_lists import IN_BEARINGS, NamedChanges, listed_changes
 from asperity.case.sections import DURATION, DURATION_OR_ZERO
 from asperity.case.speed import Speed, span_of
 from asperity.case.surface import INDEX
-from asperity.case.table_headings import Column
-from asperity.case.tables import TableFile, TableSource, read_table
 from asperity.errors import InputError, PhysicsWarning
+from asperity.laws import Need, spec_of
 from asperity.parameters import (
-    FROM_PYTHON,
     Choice,
-    File,
     Flag,
     ListOf,
     Number,
-    Origin,
     Quantity,
     key,
-    keys_of,
     optional,
 )
-from asperity.reference.bearings import LISTED, LISTING, named_bearings
 from asperity.rolling.resolution import PER_MODE
 from asperity.speeds import FEWEST_TURNS, SpeedCourse, covered, reached
-from asperity.structures.ball_bearing import PARTS, BallBearing, Kinematics
+from asperity.structures.ball_bearing import PARTS, Kinematics
 from asperity.structures.modal import HIGHEST
-from asperity.surfaces.faults import Fault
-from asperity.surfaces.raceway import AroundTexture, closed_trace
 from asperity.units import written
 from asperity.written_numbers import rounded
 
 if TYPE_CHECKING:
+    from asperity.contact.film import Film
     from asperity.contact.hertz import Hertz
     from asperity.structures.bearing_statics import LoadedBearing
-    from asperity.structures.modal import ModalStructure
     from asperity.structures.ring import Around, Ring
 
 SAMPLING = 2.56
@@ -65,244 +54,13 @@ MOST_STEPS = 10**8
 """Time steps of all balls: 4 GB while they roll."""
 FEWEST = 5.0
 """Periods of the slowest tone in a record, at least."""
-_STIFFNESS = Quantity("N/m", at_least=0)
-_STIFF = "1 N/m to 1 TN/m: softer holds nothing, harder is rigid"
-_RATE, _MASS = Quantity("Hz", above=0), Quantity("kg", above=0)
 _SPEED = Speed("Hz", "1/min", above=0)
-_DAMPED = "1e-9 N s/m to 1e9 N s/m: less damps nothing, more is rigid"
 _BAND, _ANGLES = ListOf(Quantity("Hz", at_least=0), least=2), ListOf(Quantity("rad"), least=1)
-_RATIO, _SLIPS = Number(at_least=0, at_most=0.99), ListOf(Number(at_least=0, at_most=0.2), least=2)
-_COUNT = Number(at_least=1, whole=True)
-_LENGTH = Quantity("m", above=0)
-_RINGS = "0.1 mm to 1 m: rings lie between"
-DIMENSIONS = keys_of(BallBearing, otherwise="that of the named bearing")
-NEEDED = ("balls", "ball_diameter", "pitch_diameter")
-LOAD = Quantity("N", at_least=0)
-LOADS = "0 N to 100 MN: bearings carry less"
-SPEEDS = "0 Hz to 10 kHz: bearings turn slower"
+_RATE = Quantity("Hz", above=0)
+_SLIPS = ListOf(Number(at_least=0, at_most=0.2), least=2)
 
 
-def _refused(made: Callable[[], object]) -> Iterator[InputError]:
-    """Why something cannot be made, if so."""
-    try:
-        made()
-    except InputError as error:
-        yield error
-
-
-@dataclass(frozen=True)
-class _BearingName(Choice):
-    """A name of the list of bearings, which is too long to stand in a message."""
-
-    words: tuple[str, ...] = tuple(LISTED)
-
-    @property
-    def allowed(self) -> str:
-        """What may stand behind the key."""
-        return f"one of {len(self.words)} names: {LISTING}"
-
-    def __call__(self, value: object, origin: Origin = FROM_PYTHON) -> str:
-        """Return the name."""
-        if not isinstance(value, str) or value not in self.words:
-            self.refuse(value, named_bearings(value))
-        return value
-
-
-class BearingGeometry(NamedBearing, parameters=DIMENSIONS):
-    """A ball bearing, named or by its dimensions."""
-
-    MODEL = BallBearing
-    DIMENSIONS = DIMENSIONS
-    NEEDED = NEEDED
-    ALTERNATIVES = (("clearance", "contact_angle"),)
-
-    name: str | None = optional(_BearingName(), "6205", "named bearing", "the dimensions are given")
-
-    if TYPE_CHECKING:
-
-        @property
-        def bearing(self) -> BallBearing:
-            """The bearing."""
-
-    @classmethod
-    def names_in_words(cls) -> str:
-        """How many names there are, and which command lists them."""
-        return named_bearings()
-
-
-class BearingKeys(BearingGeometry):
-    """A ball bearing and what it carries."""
-
-    radial: float = key(LOAD, "0 N", "radial load on the inner ring", LOADS)
-    axial: float = key(LOAD, "0 N", "axial load on the inner ring", LOADS)
-    speed: float | None = optional(
-        Quantity("Hz", "1/min", at_least=0),
-        "1800 1/min",
-        "speed of the ring that turns",
-        "it stands still",
-        SPEEDS,
-    )
-    contact_damping: float = key(DAMPING, "0 N s/m", "damping of each contact, for --table", _DAMPED)
-    lubricant: LubricantKeys = section(LubricantKeys, "the oil: how thick its films are")
-
-
-CARRIED = {"radial": "N", "axial": "N", "speed": "Hz", "contact_damping": "N s/m"}
-"""Keys of `BearingKeys` that a case has, too, in SI."""
-
-
-def _of_case(keys: dict[str, Any], source: str) -> dict[str, Any]:
-    """Bearing and load of a file; of a case that is read as one what concerns them."""
-    toml.refuse_vast(keys, source)
-    if "kind" not in keys:
-        return keys
-    case = BearingUnderLoad.read(keys, Origin.file(source))
-    carried = {name: f"{float(getattr(case, name))!r} {unit}" for name, unit in CARRIED.items()}
-    carried["contact_damping"] = f"{0.5 * sum(case.dampings)!r} N s/m"
-    return dict(keys.get("bearing", {})) | carried | {"lubricant": keys.get("lubricant", {})}
-
-
-def bearing_of_run(text: str, source: str) -> BearingKeys:
-    """Bearing, load and speed of a run by the text of its case, whose files need no longer be there."""
-    keys = toml.read_toml(text, "case", source)
-    own = {name: keys[name] for name in ("kind", "bearing", "lubricant", *CARRIED) if name in keys}
-    return BearingKeys.read(_of_case(own, source), Origin.file(source))
-
-
-def read_bearing(source: str, options: Mapping[str, Any]) -> BearingKeys:
-    """Read a bearing by its name, or from a TOML file or case; options, as they are typed, are stronger."""
-    keys: dict[str, Any] = {"name": source}
-    if source not in LISTED:
-        definition = toml.read_definition(source, "bearing", named_bearings(source))
-        keys = _of_case(toml.read_toml(definition, "bearing", source), source)
-    typed: dict[str, Any] = {name: value for name, value in options.items() if value is not None}
-    if "lubricant" in typed and isinstance(known := keys.get("lubricant"), dict):
-        typed["lubricant"] = known | typed["lubricant"]
-    return BearingKeys.read(keys | typed, Origin.file(source))
-
-
-class ShaftKeys(Section):
-    """What a ring carries, and what holds it."""
-
-    mass: float = key(
-        _MASS, "1 kg", "mass of the ring with all that moves with it", "1 mg to 1000 t: what bearings carry"
-    )
-    radial_stiffness: float = key(_STIFFNESS, "100 MN/m", "spring that holds it radially; 0 for none", _STIFF)
-    axial_stiffness: float = key(_STIFFNESS, "100 MN/m", "spring that holds it axially; 0 for none", _STIFF)
-    damping_ratio: float = key(_RATIO, 0.02, "damping ratio on these springs, and of its lobes")
-    modes: Path | ModalStructure | None = optional(
-        File(held=(Numbers,), content="a table of modes over the angle"),
-        "around.csv",
-        "modes in which the ring bends, with what holds it: radially, once around",
-        "it is rigid, but for its lobes",
-    )
-
-    def bending(self, contact_angle: float) -> Around | None:
-        """The ring by its modes, where it has any."""
-        from asperity.structures.modal import ModalStructure
-        from asperity.structures.modal_files import read_modal_structure
-        from asperity.structures.ring import Around
-
-        found = self.modes
-        if found is None:
-            return None
-        if isinstance(found, Path):
-            found = read_modal_structure(found, around=True)
-        known = isinstance(found, ModalStructure)
-        require(known, "modes", name_of(found), "a file, or an asperity.ModalStructure over angles in rad")
-        remedy = "Leave out rigid modes, which mass and springs make."
-        require(found.frequencies.all(), "modes", "one of 0 Hz", "modes that bend", remedy)
-        return Around(found, contact_angle)
-
-    def problems(self) -> Iterator[InputError]:
-        """Modes that can be read, and close."""
-        try:
-            self.bending(0.0)
-        except InputError as error:
-            about = "" if error.what == "modes" else f" ({error.what})"
-            yield error.about("modes", f"{error.received}{about}")
-
-
-class HousingKeys(ShaftKeys):
-    """The same of the outer ring, which may bend by its section."""
-
-    ALTERNATIVES = (("lobes", "modes"),)
-
-    lobes: int | None = optional(
-        Number(at_least=2, at_most=20, whole=True), 4, "most lobes in which the ring bends", "it is rigid"
-    )
-    width: float = key(_LENGTH, "15 mm", "width of its section", _RINGS, goes_with="lobes")
-    thickness: float = key(_LENGTH, "3 mm", "thickness of its section", _RINGS, goes_with="lobes")
-
-
-def read_roundness(table: TableSource) -> Array:
-    """Read a roundness trace (n, 2), rad and m, over one turn that closes."""
-    rows = read_table(table, (Column("angle", "rad"), Column("deviation", "m")))
-    closed_trace(rows)
-    return rows
-
-
-def _keys_of(model: Any) -> dict[str, Any]:
-    """Keys of what a dataclass declares: where the class has a default, it is their example."""
-    fixed = {field.name for field in fields(model) if field.default not in (None, MISSING, ())}
-    return {
-        name: replace(key, default=key.example, otherwise="") if name in fixed else key
-        for name, key in keys_of(model, otherwise="none").items()
-    }
-
-
-_AROUND = _keys_of(AroundTexture)
-_TRACE = TableFile(columns=(2,), content="a table of angle and deviation", read=read_roundness)
-
-
-def _values(section: Section) -> dict[str, Any]:
-    return {name: value for name in section.keys if (value := getattr(section, name)) is not None}
-
-
-class AroundKeys(Section, parameters=_AROUND | {"trace": replace(_AROUND["trace"], kind=_TRACE)}):
-    """What is on a raceway or on the balls all around."""
-
-    if TYPE_CHECKING:
-        trace: Path | Array | None
-
-    def texture(self) -> AroundTexture:
-        """It, with what its files hold."""
-        given = _values(self)
-        if self.trace is not None:
-            given["trace"] = read_roundness(self.trace)
-        return AroundTexture(**given)
-
-    def problems(self) -> Iterator[InputError]:
-        """Waves with their amplitudes, one texture of each sort."""
-        yield from _refused(self.texture)
-
-
-class FaultKeys(Section, parameters=_keys_of(Fault)):
-    """One fault of a raceway or of a ball, or several alike around it."""
-
-    on: str | None = optional(Choice(PARTS), "outer", "part that has it", "no fault")
-    ball: int = key(
-        _COUNT, 1, "ball that has it, by number", "1 to 500: balls are fewer", goes_with="on=ball"
-    )
-
-    @property
-    def fault(self) -> Fault | None:
-        """The fault, if there is one."""
-        given = _values(self)
-        del given["ball"]
-        return Fault(**given) if given.pop("on", None) else None
-
-    def lies_on(self, part: str, ball: int) -> bool:
-        """Whether a raceway has it, or the ball of a number."""
-        return self.on == part and (part != "ball" or self.ball == ball)
-
-    def problems(self) -> Iterator[InputError]:
-        """All that a fault of its shape has, and a part that has it."""
-        if self.on is None and self.given():
-            yield InputError("on", "nothing", Choice(PARTS).allowed, "Say which part has the fault.")
-        yield from _refused(lambda: self.fault)
-
-
-class BearingUnderLoad(Oiled, AnyCase):
+class BearingUnderLoad(AnyCase):
     """A ball bearing runs under a constant load.
 
     Numbers are in SI, or text with its unit. ``asperity new ball-bearing`` writes these keys as a case file.
@@ -380,7 +138,7 @@ class BearingUnderLoad(Oiled, AnyCase):
         "the most impulsive one",
         "1 Hz to 500 kHz: bearings ring between",
     )
-    contact_damping: float = key(DAMPING, "20 N s/m", "damping of each contact without oil", _DAMPED)
+    contact_damping: float = key(DAMPING, "20 N s/m", "damping of each contact without oil", DAMPED)
     centrifugal: bool = key(Flag(), True, "whether balls press the outer ring as they go round")
     cage_slip: tuple[float, ...] = key(
         _SLIPS, [0.0, 0.0], "least and largest share by which the cage lags, drawn anew at each turn"
@@ -469,6 +227,31 @@ class BearingUnderLoad(Oiled, AnyCase):
         return (of.inner_contact, loads[0]), (of.outer_contact, loads[1])
 
     @property
+    def passing_speeds(self) -> tuple[float, float]:
+        """Speeds with which contacts move along the inner and the outer raceway, m/s."""
+        return self.kinematics.passing_speeds(self.bearing.bearing.raceway_radii)
+
+    @cached_property
+    def films(self) -> tuple[Film, Film] | None:
+        """Films of oil in the contacts with the inner and the outer ring, if there is oil."""
+        inner, outer = (
+            self.lubricant.film(contact, speed)
+            for (contact, _), speed in zip(self.contacts, self.passing_speeds, strict=True)
+        )
+        return None if inner is None or outer is None else (inner, outer)
+
+    @property
+    def dampings(self) -> tuple[float, float]:
+        """Damping of a contact with the inner and with the outer ring, N s/m."""
+        if self.films is None:
+            return self.contact_damping, self.contact_damping
+        inner, outer = (
+            self.lubricant.damping(film, load)
+            for film, (_, load) in zip(self.films, self.contacts, strict=True)
+        )
+        return inner, outer
+
+    @property
     def ball_resonance(self) -> float:
         """Natural frequency, Hz, of the most loaded ball between both rings at rest."""
         stiffness = sum(each.tangent_stiffness(each.approach(load)) for each, load in self.contacts)
@@ -543,6 +326,13 @@ class BearingUnderLoad(Oiled, AnyCase):
         each = 5 * self.bearing.bearing.balls + 10
         return len(self.laws) * each * self.duration * self.sampling_rate
 
+    def _problems_of_films(self) -> Iterator[InputError]:
+        """Laws with which a film may be in series."""
+        for number, law in enumerate(self.laws if self.films else (), 1):
+            if spec_of(law).solved_every_step or Need.DATUM in spec_of(law).needs:
+                allowed = "laws that follow a force curve or a table, where a film of oil is in series"
+                yield InputError(f"laws[{number}]", f'"{law}"', allowed, "Take it out, or leave out the oil.")
+
     def problems(self) -> Iterator[InputError]:
         """A load that is carried, at a speed at which balls stay between the rings; and a record of it."""
         yield from self.problems_of_law_keys()
@@ -559,7 +349,7 @@ class BearingUnderLoad(Oiled, AnyCase):
                 f"less than {rounded(60.0 * leaving, 5)} 1/min, or a larger axial load or bearing.preload"
             )
             yield InputError("speed", received, allowed)
-        yield from self.problems_of_films()
+        yield from self._problems_of_films()
         balls = self.bearing.bearing.balls
         for name, fault in self.faults.items():
             if fault.on is None:

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from asperity.case.form import Section
 from asperity.contact.film import LINES, Film, LineFilm, inlet_heating
 from asperity.contact.oil import DENSITY, GRADES, INDEX, Oil
 from asperity.errors import InputError
-from asperity.laws import Need, spec_of
 from asperity.parameters import Choice, Number, Quantity, key, optional
 
 if TYPE_CHECKING:
-    from asperity.structures.ball_bearing import Kinematics
+    pass
 
 GRADE = "ISO VG "
 _VISCOSITY = Quantity("m^2/s", above=0)
@@ -128,53 +126,3 @@ class RollerLubricantKeys(LubricantKeys):
         if (oil := self.found) is None:
             return None
         return LineFilm(contact, speed, *self._at(oil, speed), fit=self.formula)
-
-
-class Oiled:
-    """A bearing that runs, by its oil: films of the contacts under their largest static loads."""
-
-    if TYPE_CHECKING:
-        bearing: Any
-        lubricant: LubricantKeys
-        laws: tuple[str, ...]
-        contact_damping: float
-
-        @property
-        def kinematics(self) -> Kinematics:
-            """What turns how fast."""
-
-        @property
-        def contacts(self) -> Any:
-            """Smooth contacts with the inner and the outer ring, and their largest static loads, N."""
-
-    @property
-    def passing_speeds(self) -> tuple[float, float]:
-        """Speeds with which contacts move along the inner and the outer raceway, m/s."""
-        return self.kinematics.passing_speeds(self.bearing.bearing.raceway_radii)
-
-    @cached_property
-    def films(self) -> tuple[Film, Film] | None:
-        """Films of oil in the contacts with the inner and the outer ring, if there is oil."""
-        inner, outer = (
-            self.lubricant.film(contact, speed)
-            for (contact, _), speed in zip(self.contacts, self.passing_speeds, strict=True)
-        )
-        return None if inner is None or outer is None else (inner, outer)
-
-    @property
-    def dampings(self) -> tuple[float, float]:
-        """Damping of a contact with the inner and with the outer ring, N s/m."""
-        if self.films is None:
-            return self.contact_damping, self.contact_damping
-        inner, outer = (
-            self.lubricant.damping(film, load)
-            for film, (_, load) in zip(self.films, self.contacts, strict=True)
-        )
-        return inner, outer
-
-    def problems_of_films(self) -> Iterator[InputError]:
-        """Laws with which a film may be in series."""
-        for number, law in enumerate(self.laws if self.films else (), 1):
-            if spec_of(law).solved_every_step or Need.DATUM in spec_of(law).needs:
-                allowed = "laws that follow a force curve or a table, where a film of oil is in series"
-                yield InputError(f"laws[{number}]", f'"{law}"', allowed, "Take it out, or leave out the oil.")

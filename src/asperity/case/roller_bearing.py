@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, ClassVar
 
 from asperity.case.any_case import LAW
-from asperity.case.ball_bearing import AroundKeys, BearingUnderLoad, FaultKeys
+from asperity.case.ball_bearing import BearingUnderLoad
+from asperity.case.bearing_sections import AroundKeys, FaultKeys
 from asperity.case.form import section
 from asperity.case.lubricant import RollerLubricantKeys
 from asperity.case.named_bearing import NamedBearing

@@ -6,7 +6,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from asperity.case.ball_bearing import BearingKeys, bearing_of_run, read_bearing
+from asperity.case.loaded_bearing import BearingKeys, bearing_of_run, read_bearing
 from asperity.cli.bearing_films import say_films
 from asperity.cli.bearing_table import write_table
 from asperity.cli.bearing_tolerances import say_tolerances

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from asperity.case.ball_bearing import BearingKeys
+from asperity.case.loaded_bearing import BearingKeys
 from asperity.contact.film import FULL
 from asperity.structures.bearing_statics import LoadedBearing
 from asperity.terminal import say, say_table

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from asperity.arguments import Array
-from asperity.case.ball_bearing import LOAD, BearingKeys, read_bearing
+from asperity.case.loaded_bearing import LOAD, BearingKeys, read_bearing
 from asperity.errors import InputError
 from asperity.parameters import FROM_PYTHON, Quantity
 from asperity.structures.stiffness_table import SIGNS, BearingMatrices, stiffness_table

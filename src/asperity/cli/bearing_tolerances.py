@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
-from asperity.case.ball_bearing import read_bearing
+from asperity.case.loaded_bearing import read_bearing
 from asperity.diagnostics import ISO_BANDS
 from asperity.diagnostics.decision import NAMES
 from asperity.errors import InputError

@@ -12,7 +12,7 @@ import numpy as np
 
 from asperity import diagnostics
 from asperity.arguments import Array, require
-from asperity.case.ball_bearing import BearingKeys
+from asperity.case.loaded_bearing import BearingKeys
 from asperity.diagnostics import Diagnosis, LineFamily, Spectrum, Tone
 from asperity.diagnostics.decision import NAMES
 from asperity.diagnostics.verdict import faint_lines

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from asperity.arguments import one_of
-from asperity.case.ball_bearing import AroundKeys, BearingUnderLoad
+from asperity.case.ball_bearing import BearingUnderLoad
+from asperity.case.bearing_sections import AroundKeys
 from asperity.errors import InputError, PhysicsWarning
 from asperity.laws import Law, Need, spec_of
 from asperity.progress import Progress

@@ -24,7 +24,7 @@ from asperity.written_numbers import rounded
 if TYPE_CHECKING:
     from xarray import DataTree
 
-    from asperity.case.ball_bearing import BearingKeys
+    from asperity.case.loaded_bearing import BearingKeys
     from asperity.structures.bearing_statics import LoadedBearing
 
 FACTORS = np.geomspace(0.1, 4.0, 15)

@@ -1,0 +1,207 @@
+"""Commands that show what was computed, and what is around it: the page, pictures, sounds, what is kept."""
+
+import importlib.util
+from pathlib import Path
+
+import click
+
+from asperity.cli import commands
+from asperity.cli.commands import PATH, output
+from asperity.cli.program import Document, commands_of, main
+from asperity.errors import InputError
+from asperity.terminal import say
+
+_look = commands_of("Look, listen and compare")
+_around = commands_of("Around it")
+
+
+@_look("A page in the browser: set cases, press, roll, watch, listen.", document=False)
+@click.option(
+    "--port",
+    type=click.IntRange(0, 65535),
+    default=0,
+    help="Port of this machine. [default: one that is free]",
+)
+@output(
+    "Folder of surfaces and runs; those of an earlier time are found again.",
+    default=Path("asperity-page"),
+    show_default=True,
+)
+def serve(port: int, directory: Path) -> None:
+    """Serve a page on this machine: set cases, press the contact, roll, watch, compare and listen.
+
+    Prints the address, which holds a token: whoever has it may use the page. Needs the extra app.
+
+    Examples
+    --------
+    # open the address that it prints; Ctrl-C ends it
+    asperity serve
+    # a folder and a port of your choice
+    asperity serve -o shared/bearing --port 8080
+    """
+    missing = [name for name in ("starlette", "uvicorn") if importlib.util.find_spec(name) is None]
+    if missing:
+        remedy = 'Install them: python -m pip install "asperity[app]".'
+        raise InputError("asperity serve", f"no {' and no '.join(missing)}", "the extra app", remedy)
+    from asperity.serving.server import serve_folder
+
+    serve_folder(directory, port)
+    say("Ended; runs and surfaces are kept.", err=True)
+
+
+@_look("Write the report of a run again, or a summary of one page.", name="report", document=False)
+@commands.run_argument
+@click.option(
+    "--summary", is_flag=True, help="Result, three figures, validity and origin on one sheet of A4."
+)
+@output("Folder of the report. [default: that of the run]")
+def report_again(run: Path, summary: bool, directory: Path | None) -> None:
+    """Write the report of a RUN (run.nc, or its folder) again, or a summary of it on one sheet of paper.
+
+    Examples
+    --------
+    # one sheet of A4 for a client: runs/case/summary.html
+    asperity report runs/case --summary
+    # the page and its CSVs, from what run.nc holds
+    asperity report runs/case -o page
+    """
+    from asperity.cli.results import report_again as write_report
+
+    write_report(run, directory, summary=summary)
+
+
+@_look("Draw the figures of a run to files, for a paper.", document=False)
+@commands.run_argument
+@click.argument("names", nargs=-1, metavar="[NAME]...")
+@click.option(
+    "--format",
+    type=click.Choice(["svg", "pdf", "png"]),
+    default="svg",
+    show_default=True,
+    help="Of the files; words stay words in SVG and PDF.",
+)
+@output("Folder of the figures. [default: figures, beside the run]")
+def figures(run: Path, names: tuple[str, ...], format: str, directory: Path | None) -> None:
+    """Draw the figures of a RUN (run.nc, or its folder) to files: all of them, or those with a NAME.
+
+    A name is that of a CSV file, which holds the numbers of the figure, or its title in the report.
+
+    Examples
+    --------
+    # all of them, as SVG, into runs/case/figures
+    asperity figures runs/case
+    # two, by the names of their CSV files
+    asperity figures runs/case --format pdf force_bands scene
+    # by its title, or the beginning of it
+    asperity figures runs/case 'contact force levels' -o paper
+    """
+    from asperity.cli.results import draw_figures
+
+    draw_figures(run, directory, format, names)
+
+
+@_look("What differs between runs: cases, levels, force, stiffness.", document=False)
+@click.argument("runs", nargs=-1, type=PATH, required=True)
+@output(
+    "Folder of comparison.html and comparison.csv, or the page itself, ….html.",
+    default=Path("comparison"),
+    show_default=True,
+)
+def compare(runs: tuple[Path, ...], directory: Path) -> None:
+    """Compare RUNS (run.nc, or their folders) with the first of them: one page and one table.
+
+    What differs in the cases; levels and their differences in each one-third octave and in dB(A); force, loss
+    of contact, stiffness, filters and verdicts.
+
+    Examples
+    --------
+    # page and table in 'comparison'
+    asperity compare runs/smooth runs/rough
+    # three runs, into a folder of your choice
+    asperity compare runs/a runs/b runs/c -o what-if
+    """
+    from asperity.cli.results import compare_runs
+
+    compare_runs(runs, directory)
+
+
+@_look("Write what a run sounds like, as WAV files.", params=commands.LISTEN)
+@commands.run_argument
+@output("Folder of the sounds. [default: sounds, beside the run]")
+def listen(run: Path, what: str | None, matched: bool, directory: Path | None) -> Document:
+    """Write what a RUN sounds like (run.nc, or its folder): a WAV file for each law and place, 48 kHz.
+
+    Examples
+    --------
+    # into runs/case/sounds, all on one scale
+    asperity listen runs/case
+    # equally loud, so that only the sound differs
+    asperity listen runs/case --matched
+    """
+    from asperity.cli.results import write_sounds
+
+    return write_sounds(run, directory, what, matched=matched)
+
+
+@_look("Say what to cite for a run.")
+@commands.run_argument
+def cite(run: Path) -> Document:
+    """Say what to cite for a RUN (run.nc, or its folder): the program and its sources.
+
+    Examples
+    --------
+    # the program in its version, and the sources of the run
+    asperity cite runs/case
+    """
+    from asperity.reporting.page import literature
+    from asperity.results import read_result
+
+    sources = literature(read_result(run))
+    for source in sources:
+        say(source)
+    return {"run": run.resolve(), "sources": sources}
+
+
+# --- around it
+
+
+@_around("Show or delete what is kept between runs.")
+@click.option("--clear", is_flag=True, help="Delete what is kept; it is computed again when it is needed.")
+def cache(clear: bool) -> Document:
+    """Show what is kept: finished pieces of work, compiled functions, and what interrupted runs left.
+
+    Work is kept in $ASPERITY_CACHE, by default in the cache folder of the system.
+
+    Examples
+    --------
+    # what is kept, where, and how much it is
+    asperity cache
+    # delete it; it is computed again when it is needed
+    asperity cache --clear
+    """
+    from asperity.cli.results import show_cache
+
+    return show_cache(clear=clear)
+
+
+@_around("Let the shell complete commands, files, kinds and laws.", document=False)
+@click.argument("shell", type=click.Choice(["bash", "zsh", "fish"]))
+def completion(shell: str) -> None:
+    """Print what makes a SHELL complete commands, options, files, kinds of case and laws.
+
+    It works in shells that are opened after one of the lines below.
+
+    Examples
+    --------
+    # bash 4.4 or later
+    echo 'eval "$(asperity completion bash)"' >> ~/.bashrc
+    # zsh, below the line with compinit
+    echo 'eval "$(asperity completion zsh)"' >> ~/.zshrc
+    # fish
+    asperity completion fish > ~/.config/fish/completions/asperity.fish
+    """
+    from click.shell_completion import get_completion_class
+
+    kind = get_completion_class(shell)
+    assert kind is not None
+    say(kind(main, {}, "asperity", "_ASPERITY_COMPLETE").source(), lines=True)
