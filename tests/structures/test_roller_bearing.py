@@ -159,6 +159,39 @@ def test_its_stiffness_is_what_a_little_more_load_meets(bearing, speed):
     np.testing.assert_allclose(found.stiffness[0], found.stiffness[0].T, rtol=1e-9)
 
 
+def test_dampers_of_both_contacts_take_what_a_roller_between_them_leaves():
+    """Alike, it follows by a half, and a pair damps as half of one; where it follows less, the inner more."""
+    found = TAPERED.loaded(axial=3000.0)
+    sine, cosine = math.sin(0.25), math.cos(0.25)
+    expected = 15 * 10.0 * np.diag([0.5 * cosine**2, 0.5 * cosine**2, sine**2])
+    np.testing.assert_allclose(found.damping(20.0), np.broadcast_to(expected, (24, 3, 3)), atol=1e-9)
+    fast = TAPERED.loaded(axial=1000.0, speed=400.0, cage_angles=[0.0])
+    stiff = [
+        contact.tangent_stiffness(contact.approach(float(load[0, 0])))
+        for contact, load in (
+            (TAPERED.inner_contact, fast.inner_load),
+            (TAPERED.outer_contact, fast.outer_load),
+        )
+    ]
+    share = stiff[0] / sum(stiff)
+    assert share < 0.49
+    along = 15 * 20.0 * ((1.0 - share) ** 2 + share**2) * sine**2
+    assert fast.damping(20.0)[0, 2, 2] == pytest.approx(along, rel=1e-6)
+    alone = NU205.with_(rollers=3).loaded(500.0, cage_angles=[0.0])
+    assert alone.touching[0] == 1.0
+    np.testing.assert_allclose(alone.damping(20.0)[0], np.diag([10.0, 0.0, 0.0]), atol=1e-9)
+
+
+def test_slip_alone_moves_tones_of_rollers():
+    tones = TAPERED.tones(axial=True)
+    pure = TAPERED.kinematics(1.0)
+    slipped = TAPERED.kinematics(1.0, slip=0.01)
+    assert tones["outer"].order == tones["outer"].highest == pytest.approx(pure.ball_pass_outer)
+    assert tones["outer"].lowest == pytest.approx(slipped.ball_pass_outer)
+    assert tones["inner"].highest == pytest.approx(slipped.ball_pass_inner)
+    assert tones["ball"].unlike == 2
+
+
 def test_a_tilt_presses_the_ends_that_lie_back_where_the_load_points():
     found = NU205.loaded(2000.0, tilt=2e-3, cage_angles=[0.0])
     straight = NU205.loaded(2000.0, cage_angles=[0.0])

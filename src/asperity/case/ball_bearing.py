@@ -11,10 +11,18 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from asperity.case.any_case import LAW, AnyCase
-from asperity.case.bearing_sections import AroundKeys, BearingGeometry, FaultKeys, HousingKeys, ShaftKeys
+from asperity.case.bearing_sections import (
+    DAMPED,
+    LOAD,
+    LOADS,
+    AroundKeys,
+    BearingGeometry,
+    FaultKeys,
+    HousingKeys,
+    ShaftKeys,
+)
 from asperity.case.body import DAMPING
 from asperity.case.form import section
-from asperity.case.loaded_bearing import DAMPED, LOAD, LOADS
 from asperity.case.lubricant import LubricantKeys
 from asperity.case.measured_tables import MeasuredBearingKeys
 from asperity.case.ready_lists import IN_BEARINGS, NamedChanges, listed_changes

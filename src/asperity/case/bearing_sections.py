@@ -40,6 +40,9 @@ _RATIO = Number(at_least=0, at_most=0.99)
 _COUNT = Number(at_least=1, whole=True)
 _LENGTH = Quantity("m", above=0)
 _RINGS = "0.1 mm to 1 m: rings lie between"
+LOAD = Quantity("N", at_least=0)
+LOADS = "0 N to 100 MN: bearings carry less"
+DAMPED = "1e-9 N s/m to 1e9 N s/m: less damps nothing, more is rigid"
 DIMENSIONS = keys_of(BallBearing, otherwise="that of the named bearing")
 NEEDED = ("balls", "ball_diameter", "pitch_diameter")
 

@@ -62,7 +62,7 @@ class RollerGeometry(NamedBearing, parameters=DIMENSIONS):
     @classmethod
     def names_in_words(cls) -> str:
         """The names that there are."""
-        return f"Named bearings: {', '.join(ROLLER_BEARINGS)}."
+        return f"Named roller bearings: {', '.join(ROLLER_BEARINGS)}."
 
     def problems(self) -> Iterator[InputError]:
         """What a bearing lacks, or why it cannot be, by the key of its crowning."""

@@ -1,4 +1,4 @@
-"""``asperity bearing``: how a ball bearing carries a load, its tones, and which of them its signal holds."""
+"""``asperity bearing``: how a bearing carries a load, its tones, and which of them its signal holds."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -6,12 +6,14 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from asperity.case.loaded_bearing import BearingKeys, bearing_of_run, read_bearing
+import numpy as np
+
+from asperity.case.loaded_bearing import LoadKeys, bearing_of_run, read_bearing
 from asperity.cli.bearing_films import say_films
 from asperity.cli.bearing_table import write_table
 from asperity.cli.bearing_tolerances import say_tolerances
 from asperity.cli.heard import heard
-from asperity.diagnostics.decision import NAMES
+from asperity.diagnostics.decision import part_name
 from asperity.errors import InputError
 from asperity.files import write_bytes
 from asperity.reference.bearings import COLUMNS, LISTED, PITCH, TONES, by_citation, named_bearings
@@ -21,6 +23,8 @@ from asperity.scenes.figures.bearing import ball_contacts_table, load_zone
 from asperity.schema import tree
 from asperity.structures.ball_bearing import PARTS, Kinematics
 from asperity.structures.bearing_statics import doubt_speed
+from asperity.structures.roller_bearing import PRINTED, ROLLER_BEARINGS, AnyBearing, RollerBearing
+from asperity.structures.roller_statics import LoadedRollers
 from asperity.terminal import say, say_table
 from asperity.written_numbers import rounded
 
@@ -34,8 +38,8 @@ OPTIONS = ("radial", "axial", "speed", "clearance", "contact_damping")
 OIL = ("oil", "temperature")
 """Those of its lubricant."""
 MEANINGS = {
-    "outer": "BPFO: balls pass a spot of it",
-    "inner": "BPFI: balls pass a spot of it",
+    "outer": "BPFO: {}s pass a spot of it",
+    "inner": "BPFI: {}s pass a spot of it",
     "ball": "2 BSF: a spot of it meets a ring",
 }
 
@@ -87,20 +91,32 @@ def show_bearing(
         waves = say_tolerances(source, options, limits, outer_mass)
         return {"bearing": source, **dict.fromkeys(TOLD), "tolerances": waves}
     keys = read_bearing(source, options)
-    of = keys.bearing
     name = keys.name or source
-    say(
-        f"{name}: {of.balls} balls of {of.ball_diameter * 1e3:.4g} mm, pitch diameter "
-        f"{of.pitch_diameter * 1e3:.4g} mm, grooves of {of.inner_conformity:g} D (inner) and "
-        f"{of.outer_conformity:g} D (outer), clearance {rounded(of.radial_clearance * 1e6)} µm, free contact "
-        f"angle {rounded(math.degrees(of.free_angle))}°"
-    )
+    say(f"{name}: {_in_words(keys.bearing)}")
     if keys.name:
-        say(LISTED[keys.name].sentence)
+        say(PRINTED.get(keys.name) or LISTED[keys.name].sentence)
     told = heard(keys, (*signals, *more), picture, **choices) if signals else _carried(keys, picture)
     if picture is not None:
         told["files"] = {"picture": picture}
     return {"bearing": name, **dict.fromkeys(TOLD), **told}
+
+
+def _in_words(of: AnyBearing) -> str:
+    """What a bearing is made of, in a line."""
+    rolling = f"{of.ball_diameter * 1e3:.4g}"
+    pitch = f"pitch diameter {of.pitch_diameter * 1e3:.4g} mm"
+    clearance = f"clearance {rounded(of.radial_clearance * 1e6)} µm"
+    angle = f"contact angle {rounded(math.degrees(of.free_angle))}°"
+    if isinstance(of, RollerBearing):
+        crowning = f"{of.crowning} profile" + f" of {rounded(of.profile.drop * 1e6)} µm" * (
+            of.profile.drop > 0.0
+        )
+        return (
+            f"{of.rollers} rollers of {rolling} × {of.roller_length * 1e3:.4g} mm, {crowning}, {pitch}, "
+            f"{clearance}, {angle}"
+        )
+    grooves = f"grooves of {of.inner_conformity:g} D (inner) and {of.outer_conformity:g} D (outer)"
+    return f"{of.balls} balls of {rolling} mm, {pitch}, {grooves}, {clearance}, free {angle}"
 
 
 def _write_sheet(source: str, options: Mapping[str, Any], sheet: Path) -> dict[str, Any]:
@@ -134,6 +150,7 @@ def _listed() -> dict[str, Any]:
         say_table(f"{citation}. Printed: {prints}.", COLUMNS, [each.cells for each in group], width=WIDTH)
     say(PITCH)
     say("Nobody prints radii of grooves or clearances of mounted bearings: 0.52 D and 10 µm unless given.")
+    say(f"Roller bearings: {', '.join(ROLLER_BEARINGS)}.")
     known = [
         {**asdict(each), "tones": dict(zip(TONES, each.tones, strict=False))} for each in LISTED.values()
     ]
@@ -143,7 +160,7 @@ def _listed() -> dict[str, Any]:
 # --- what it carries
 
 
-def _carried(keys: BearingKeys, picture: Path | None) -> dict[str, Any]:
+def _carried(keys: LoadKeys, picture: Path | None) -> dict[str, Any]:
     speed = keys.speed or 0.0
     if keys.lubricant.found is not None and not speed:
         raise InputError(
@@ -159,9 +176,14 @@ def _carried(keys: BearingKeys, picture: Path | None) -> dict[str, Any]:
     say_table(f"{contacts.title} under {load}", contacts.head, cells, width=WIDTH)
     say(contacts.note)
     ends = dict.fromkeys(f"{each:.0f}" for each in (found.touching.min(), found.touching.max()))
-    say(f"{' to '.join(ends)} of {found.bearing.balls} balls touch the inner ring while the cage turns.")
+    of = found.bearing
+    say(f"{' to '.join(ends)} of {of.balls} {of.ELEMENT}s touch the inner ring while the cage turns.")
+    if isinstance(found, LoadedRollers):
+        heaviest = np.unravel_index(int(found.inner_load.argmax()), found.inner_load.shape)
+        carrying = f"{rounded(1e3 * found.carrying_length[heaviest])} of {rounded(1e3 * of.roller_length)} mm"
+        say(f"Of the roller that carries most {carrying} touch the inner ring; rings are held against tilt.")
     films = say_films(keys, found)
-    _say_tones(turning, f"Hz at {rounded(60.0 * speed, 5)} 1/min" if speed else "per turn")
+    _say_tones(of, turning, f"Hz at {rounded(60.0 * speed, 5)} 1/min" if speed else "per turn")
     say(f"Balance to {rounded(found.imbalance, 1)} of the load.")
     if picture is not None:
         write_chart(load_zone.drawn(at_rest).chart, f"{keys.name or 'bearing'}, {load}", picture)
@@ -173,18 +195,23 @@ def _carried(keys: BearingKeys, picture: Path | None) -> dict[str, Any]:
     return {"balls": balls, **ring, "films": films, "tones": tones if speed else None}
 
 
-def _say_tones(turning: Kinematics, unit: str) -> None:
-    """Tones of the kinematics, and those of waviness."""
+def _say_tones(of: AnyBearing, turning: Kinematics, unit: str) -> None:
+    """Tones of the kinematics, and those of waviness where an axial load is carried."""
+    element = of.ELEMENT
     rows = [["cage", f"{turning.cage:.4g}", f"{turning.cage / turning.turning:.4f}", ""]]
     waves = []
     for part, words in MEANINGS.items():
         tone, beside = turning.tone(part), turning.modulation(part)
+        words = words.format(element)
         words += f", ± {beside:.4g} as it turns through the load" if beside else ""
-        rows.append([NAMES[part], f"{tone:.4g}", f"{tone / turning.turning:.4f}", words])
+        name = part_name(part, element)
+        rows.append([name, f"{tone:.4g}", f"{tone / turning.turning:.4f}", words])
         for order in range(1, 6 if part == "ball" else 2 * turning.balls + 2):
             heard = [turning.waviness(part, order, lobes) for lobes in (0, 1)]
             cells = [", ".join(f"{tone:.4g}" for tone in tones) or "–" for tones in heard]
-            waves += [[NAMES[part], str(order), *cells]] if any(heard) else []
+            waves += [[name, str(order), *cells]] if any(heard) else []
     say_table("Tones of pure rolling", ["of", unit, "orders", "meaning"], rows, width=WIDTH)
+    if isinstance(of, RollerBearing) and not of.contact_angle:
+        return
     title = "Waviness that is heard under an axial load; other small waves move nothing"
     say_table(title, ["of", "waves per turn", f"axial, {unit}", f"radial, {unit}"], waves, width=WIDTH)

@@ -1,10 +1,9 @@
-"""``asperity bearing --oil``: how thick films of oil are under the heaviest loads of the balls."""
+"""``asperity bearing --oil``: how thick films of oil are under the heaviest loads."""
 
 from typing import Any
 
-from asperity.case.loaded_bearing import BearingKeys
+from asperity.case.loaded_bearing import LoadKeys
 from asperity.contact.film import FULL
-from asperity.structures.bearing_statics import LoadedBearing
 from asperity.terminal import say, say_table
 from asperity.written_numbers import rounded
 
@@ -12,7 +11,7 @@ RINGS = ("inner", "outer")
 WIDTH = 122
 
 
-def say_films(keys: BearingKeys, found: LoadedBearing) -> list[dict[str, Any]] | None:
+def say_films(keys: LoadKeys, found: Any) -> list[dict[str, Any]] | None:
     """Print the films on both rings, and return their numbers; nothing without oil."""
     if (oil := keys.lubricant.found) is None:
         return None

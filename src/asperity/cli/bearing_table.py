@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from asperity.arguments import Array
-from asperity.case.loaded_bearing import LOAD, BearingKeys, read_bearing
+from asperity.case.bearing_sections import LOAD
+from asperity.case.loaded_bearing import LoadKeys, read_bearing
 from asperity.errors import InputError
 from asperity.parameters import FROM_PYTHON, Quantity
 from asperity.structures.stiffness_table import SIGNS, BearingMatrices, stiffness_table
@@ -61,7 +62,7 @@ def _values(what: str, text: str, kind: Quantity) -> Array:
         raise error.about(what) from None
 
 
-def _say(found: BearingMatrices, keys: BearingKeys, source: str) -> None:
+def _say(found: BearingMatrices, keys: LoadKeys, source: str) -> None:
     """The first rows, and what they mean."""
     heading = [
         "radial / N",
@@ -83,5 +84,7 @@ def _say(found: BearingMatrices, keys: BearingKeys, source: str) -> None:
         f"{name}: stiffness and damping, means over cage angles{left}", heading, rows[:SHOWN], width=WIDTH
     )
     say(SIGNS)
+    if found.bearing.ELEMENT == "roller":
+        say("The inner ring is held against tilt.")
     if not found.contact_damping:
         say("No damping is known of a bearing: give that of each contact with --damping, or read a case.")

@@ -7,7 +7,7 @@ from typing import Any
 
 from asperity.case.loaded_bearing import read_bearing
 from asperity.diagnostics import ISO_BANDS
-from asperity.diagnostics.decision import NAMES
+from asperity.diagnostics.decision import part_name
 from asperity.errors import InputError
 from asperity.structures.waviness_tolerance import BELOW, WaveTolerance, ring_frequency, wave_tolerances
 from asperity.terminal import say, say_table
@@ -27,6 +27,7 @@ def say_tolerances(source: str, options: Mapping[str, Any], limits: str, outer_m
     if not keys.speed:
         raise InputError("speed", "none", "a speed greater than 0", "Give it, as in --speed '1800 1/min'.")
     found = keys.bearing.loaded(keys.radial, keys.axial, speed=keys.speed)
+    element = keys.bearing.ELEMENT
     highest = math.inf
     if outer_mass is not None:
         highest = BELOW * ring_frequency(found, quantity(outer_mass, "kg"))
@@ -34,25 +35,25 @@ def say_tolerances(source: str, options: Mapping[str, Any], limits: str, outer_m
     told = [each for each in every if each.order <= MOST and math.isfinite(each.amplitude)]
     title = f"Largest amplitude of one wave that keeps its band within {limits}, all else perfect"
     head = ["of", "waves per turn", "tones / Hz", "band / Hz", "µm/s for 1 µm", "amplitude / nm"]
-    say_table(title, head, map(_row, told), width=WIDTH)
+    say_table(title, head, [_row(each, element) for each in told], width=WIDTH)
     say(
         f"Waves of up to {MOST} per turn that move the outer ring radially; all others may be larger. "
         "Energies of several add: of ten that are alike each may have a third. Amplitudes are normal to the "
-        "surface; of a ball, of one of them."
+        f"surface; of a {element}, of one of them."
     )
-    beyond = "beyond half the frequency at which it moves on its balls it does not"
+    beyond = f"beyond half the frequency at which it moves on its {element}s it does not"
     if outer_mass is None:
-        say(f"The outer ring follows its balls: {beyond}. With its --outer-mass those are left out.")
+        say(f"The outer ring follows its {element}s: {beyond}. With its --outer-mass those are left out.")
     else:
-        say(f"The outer ring follows its balls up to {rounded(highest, 3)} Hz: {beyond}.")
+        say(f"The outer ring follows its {element}s up to {rounded(highest, 3)} Hz: {beyond}.")
     return [{**asdict(each), "tones": list(each.tones), "band": list(each.band)} for each in told]
 
 
-def _row(each: WaveTolerance) -> list[str]:
+def _row(each: WaveTolerance, element: str) -> list[str]:
     tones = ", ".join(f"{tone:.4g}" for tone in each.tones)
     band = f"{each.band[0]:g} to {each.band[1]:g}"
     return [
-        NAMES[each.part],
+        part_name(each.part, element),
         f"{each.order}",
         tones,
         band,

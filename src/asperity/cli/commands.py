@@ -371,7 +371,7 @@ BEARING = [
     click.Option(["--axial"], metavar="FORCE", help="Axial load on it."),
     click.Option(["--speed"], metavar="SPEED", help="Of the ring that turns, as '1800 1/min'."),
     click.Option(["--clearance"], metavar="LENGTH", help="Diametral clearance, as '10 um'."),
-    click.Option(["--oil"], metavar="GRADE", help="Oil between balls and raceways, as 'ISO VG 68': films."),
+    click.Option(["--oil"], metavar="GRADE", help="Oil in the contacts, as 'ISO VG 68': films."),
     click.Option(["--temperature"], metavar="DEGREES", help="Of the oil. [default: '70 degC']"),
     click.Option(
         ["--signal"],
@@ -401,7 +401,7 @@ BEARING = [
     ),
     click.Option(
         ["--known"],
-        type=click.Choice(["outer", "inner", "ball"]),
+        type=click.Choice(["outer", "inner", "ball", "roller"]),
         help="Part that is known to have a fault: whether the record shows it is said.",
     ),
     click.Option(

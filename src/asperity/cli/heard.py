@@ -12,9 +12,8 @@ import numpy as np
 
 from asperity import diagnostics
 from asperity.arguments import Array, require
-from asperity.case.loaded_bearing import BearingKeys
+from asperity.case.loaded_bearing import LoadKeys
 from asperity.diagnostics import Diagnosis, LineFamily, Spectrum, Tone
-from asperity.diagnostics.decision import NAMES
 from asperity.diagnostics.verdict import faint_lines
 from asperity.errors import InputError
 from asperity.progress import Progress, counted, progress_bar
@@ -49,7 +48,7 @@ OF_LINE = ("expected", "deviation", "found", "frequency", "amplitude", "backgrou
 
 
 def heard(
-    keys: BearingKeys,
+    keys: LoadKeys,
     files: Sequence[Path],
     picture: Path | None,
     *,
@@ -66,6 +65,8 @@ def heard(
     remedy = 'Give it, as in --speed "1800 1/min", or --tacho.'
     require(keys.speed or tacho, "speed", "nothing", allowed, remedy)
     require(tacho or tacho_reads is None, "--tacho-reads", f"'{tacho_reads}'", "--tacho COLUMN with it")
+    element = keys.bearing.ELEMENT
+    require(known != "roller" or element == known, "--known", known, "outer, inner or ball of a ball bearing")
     told = float(keys.speed or 0.0)
     tones = keys.bearing.tones(axial=keys.axial > 0.0)
     with progress_bar() as progress:
@@ -80,10 +81,10 @@ def heard(
             turned = _turned(courses, told)
         edges = _band(band, sampled)
         told_of = progress if sum(each.values.size for each in signals.values()) >= MANY else None
-        fastest = keys.bearing.fastest
         judge = partial(
-            diagnostics.diagnose_together, rate=sampled, tones=tones, speed=told, band=edges, fastest=fastest
-        )
+            diagnostics.diagnose_together, rate=sampled, tones=tones, speed=told, band=edges,
+            fastest=keys.bearing.fastest, element=element,
+        )  # fmt: skip
         singles = _one_by_one(signals, judge, told_of)
         judged = [signals[name] for name in singles] or list(signals.values())
         values = [each.values for each in judged]
@@ -99,7 +100,7 @@ def heard(
     _say_lines(found, tones, diagnosis)
     if faint := faint_lines(diagnosis):
         say(faint)
-    verdict = diagnostics.diagnosis_sentence(diagnosis, known)
+    verdict = diagnostics.diagnosis_sentence(diagnosis, "ball" if known == element else known)
     if picture is not None:
         _draw(keys, title, struck, found, tones, diagnosis, verdict, picture)
     say(verdict)
@@ -189,7 +190,7 @@ def _taken(diagnosis: Diagnosis) -> str:
 def _agreement(singles: Mapping[str, Diagnosis]) -> str:
     """How many signals name which part, and whether they are of one speed."""
     named = Counter(
-        " and ".join(NAMES[part.part] for part in each.parts) or "no part" for each in singles.values()
+        " and ".join(each.name(part.part) for part in each.parts) or "no part" for each in singles.values()
     )
     words = ", ".join(
         f"{count} name{'s' * (count == 1)} {_article(what)}" for what, count in named.most_common()
@@ -221,7 +222,7 @@ def _told(diagnosis: Diagnosis) -> dict[str, Any]:
 
 
 def _draw(
-    keys: BearingKeys,
+    keys: LoadKeys,
     title: str,
     struck: Spectrum,
     found: Mapping[str, LineFamily | None],
@@ -289,7 +290,7 @@ def _say_lines(
     for part, lines in found.items():
         expected = f"{tones[part].order * diagnosis.speed:.2f}"
         if lines is None:
-            rows.append([NAMES[part], expected, "not resolved", *["–"] * 6])
+            rows.append([diagnosis.name(part), expected, "not resolved", *["–"] * 6])
             continue
         line, height = lines.frequency[0], lines.amplitude[0]
         sides = "±{:.4g}: {:.2f}, {:.2f}".format(lines.distance, *lines.side_bands[0] / height)
@@ -297,7 +298,7 @@ def _say_lines(
         seen = [f"{line:.2f}", f"{line / diagnosis.speed:.3f}", f"{signed(100 * lines.deviation, 2)} %"]
         seen += [stand, sides if lines.distance else "–"]
         heights = [rounded(height), f"{height / lines.background[0]:.1f}"]
-        rows.append([NAMES[part], expected, *heights, *(seen if part in named else ["–"] * 5)])
+        rows.append([diagnosis.name(part), expected, *heights, *(seen if part in named else ["–"] * 5)])
     columns = [
         "of",
         "expected / Hz",

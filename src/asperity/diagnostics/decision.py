@@ -60,6 +60,11 @@ UNCONFIRMED: Speed = "unconfirmed"
 CONTRADICTED: Speed = "contradicted"
 
 
+def part_name(part: str, element: str = "ball") -> str:
+    """A part of a bearing in which balls or rollers roll, as people say it."""
+    return element if part == "ball" else NAMES[part]
+
+
 @dataclass(frozen=True)
 class Diagnosis:
     """What the lines of a record say.
@@ -92,6 +97,8 @@ class Diagnosis:
         What is wrong with the recording, in sentences.
     fastest : float
         Speed beyond which hardly any such bearing runs, Hz.
+    element : str
+        What rolls in the bearing, ``"ball"`` or ``"roller"``.
     """
 
     told: float
@@ -107,6 +114,11 @@ class Diagnosis:
     record: BearingRecord
     doubts: tuple[str, ...] = ()
     fastest: float = math.inf
+    element: str = "ball"
+
+    def name(self, part: str) -> str:
+        """A part, as people say it."""
+        return part_name(part, self.element)
 
     @property
     def turns(self) -> float:
@@ -203,6 +215,7 @@ def diagnose_together(
     *,
     band: tuple[float, float] | None = None,
     fastest: float = math.inf,
+    element: str = "ball",
     progress: Progress | None = None,
 ) -> Diagnosis:
     """Find which part of a bearing is struck by several records of it, at one speed and sampling rate.
@@ -215,6 +228,8 @@ def diagnose_together(
         left out.
     rate, tones, speed, band, fastest, progress
         As of `diagnose`.
+    element : {"ball", "roller"}
+        What rolls in the bearing, for sentences.
 
     Returns
     -------
@@ -227,13 +242,13 @@ def diagnose_together(
     longest = _longest_piece(rate / told)
     duration = SignalPieces.of(stretches, longest).size / rate
     part, tone = max(tones.items(), key=lambda each: each[1].order)
-    blows = f"the blows of the {NAMES[part]} at {rounded(tone.order * told, 4)} Hz"
+    blows = f"the blows of the {part_name(part, element)} at {rounded(tone.order * told, 4)} Hz"
     received = f"{rounded(rate, 6)} Hz"
     allowed = f"more than {rounded(2.0 * tone.order * told, 4)} Hz, to hold {blows}"
     remedy = f"Is the speed, {rounded(told, 5)} Hz, in 1/min? Otherwise sample faster."
     require(rate > 2.0 * tone.order * told, "sampling rate of the signal", received, allowed, remedy)
     needed = 2.0 * LOWEST_PLACE / (tone.order * told)
-    lines = f"the lines of the {NAMES[part]} at {rounded(tone.order * told, 4)} Hz"
+    lines = f"the lines of the {part_name(part, element)} at {rounded(tone.order * told, 4)} Hz"
     received = f"{rounded(duration)} s"
     allowed = f"at least {rounded(needed)} s, to resolve {lines}"
     require(duration >= needed, "duration of the signal", received, allowed, "Record longer.")
@@ -245,7 +260,7 @@ def diagnose_together(
     record = BearingRecord.of(pieces, rate, seen, limits, highest, progress)
     found = decided(record, record.read(tones, told), tones, told)
     doubts = dict.fromkeys(each for recording in recordings for each in recording.doubts)
-    return replace(found, doubts=tuple(doubts), fastest=fastest)
+    return replace(found, doubts=tuple(doubts), fastest=fastest, element=element)
 
 
 def _longest_piece(samples_of_turn: float) -> float:

@@ -3,11 +3,12 @@ resolved."""
 
 import math
 
-from asperity.diagnostics.decision import NAMES, RESOLVED, Diagnosis
+from asperity.diagnostics.decision import RESOLVED, Diagnosis
 from asperity.diagnostics.hypotheses import Hypothesis
 from asperity.written_numbers import rounded
 
 ASKED = "is the speed or the sampling rate wrong?"
+OF_BALLS = "How sure rests on records of ball bearings."
 BEYOND = "Hardly any bearing of this size turns at {}, as told: is the speed in 1/min?"
 
 
@@ -31,10 +32,12 @@ def diagnosis_sentence(found: Diagnosis, known: str | None = None) -> str:
     named = {each.part for each in (*found.parts, *found.alike)}
     if known and known not in named:
         words.append(
-            f"Of the fault of the {NAMES[known]} that is known to be there, the record holds no sign."
+            f"Of the fault of the {found.name(known)} that is known to be there, the record holds no sign."
         )
     if found.mains:
         words.append(f"What the mains feed has lines at {found.mains:.0f} Hz, too.")
+    if found.element != "ball":
+        words.append(OF_BALLS)
     return " ".join([*words, *found.doubts])
 
 
@@ -51,8 +54,8 @@ def faint_lines(found: Diagnosis) -> str:
     depth = 100.0 * found.faint.depth
     why = "too little for a fault"
     if found.faint.part == "outer":
-        why = "a sound bearing has them, too, as its balls pass through the load"
-    where = f"Faint lines at {tone}, where the {NAMES[found.faint.part]} has them"
+        why = f"a sound bearing has them, too, as its {found.element}s pass through the load"
+    where = f"Faint lines at {tone}, where the {found.name(found.faint.part)} has them"
     return f"{where}, move the envelope by {depth:.0f} %: {why}."
 
 
@@ -103,13 +106,13 @@ def _of_parts(found: Diagnosis) -> str:
     resolved = f"resolved to {rounded(found.resolution, 2)} Hz"
     sure = f"{100.0 * found.confidence:.0f} % sure{', by made signals' * found.by_made_signals}"
     if found.alike:
-        both = " and the ".join(NAMES[each.part] for each in (found.parts[0], *found.alike))
+        both = " and the ".join(found.name(each.part) for each in (found.parts[0], *found.alike))
         lines = f"Lines at {_hertz(found.parts[0].blows, found)}, {resolved}"
-        likelier = f"the {NAMES[found.parts[0].part]} is likelier"
+        likelier = f"the {found.name(found.parts[0].part)} is likelier"
         return f"{lines}, agree with more than one part, the {both}; {likelier}: {sure}."
     if found.parts:
         there = " and ".join(
-            f"lines of the {NAMES[each.part]} at {_hertz(each.blows, found)}{_half(each)}"
+            f"lines of the {found.name(each.part)} at {_hertz(each.blows, found)}{_half(each)}"
             for each in found.parts
         )
         begin = {
@@ -123,4 +126,5 @@ def _of_parts(found: Diagnosis) -> str:
             f"Blows at {_hertz(found.blows, found)}, {resolved}, are those of no part at this speed: {sure}."
         )
     condition = "" if found.speed_is == "confirmed" or found.multiple else " if it is right"
-    return f"No lines of rings or balls stand out: no sign of a fault{condition}, {sure}."
+    parts = f"rings or {found.element}s"
+    return f"No lines of {parts} stand out: no sign of a fault{condition}, {sure}."

@@ -1,4 +1,4 @@
-"""The data sheet of a ball bearing on one page: geometry, load, stiffness over load, tones, bands by part."""
+"""The data sheet of a bearing on one page: geometry, load, stiffness over load, tones, bands by part."""
 
 from __future__ import annotations
 
@@ -19,12 +19,13 @@ from asperity.scenes.bearing_at_rest import static_group
 from asperity.scenes.figures.bearing import ball_contacts_table, bands_table
 from asperity.schema import tree
 from asperity.structures.ball_bearing import PARTS
+from asperity.structures.roller_bearing import PRINTED, RollerBearing
 from asperity.written_numbers import rounded
 
 if TYPE_CHECKING:
     from xarray import DataTree
 
-    from asperity.case.loaded_bearing import BearingKeys
+    from asperity.case.loaded_bearing import LoadKeys
     from asperity.structures.bearing_statics import LoadedBearing
 
 FACTORS = np.geomspace(0.1, 4.0, 15)
@@ -34,18 +35,18 @@ COLOURS = (chart.BLUE, chart.GREEN, chart.VERMILLION)
 PART_NAMES = {
     "outer": "outer ring (BPFO)",
     "inner": "inner ring (BPFI)",
-    "ball": "ball, on both rings (2 BSF)",
+    "ball": "{}, on both rings (2 BSF)",
 }
 
 
-def bearing_sheet(name: str, keys: BearingKeys, run: DataTree | None = None) -> str:
+def bearing_sheet(name: str, keys: LoadKeys, run: DataTree | None = None) -> str:
     """Lay out the data sheet of a bearing under its load.
 
     Parameters
     ----------
     name : str
         What it is called.
-    keys : BearingKeys
+    keys : LoadKeys
         The bearing, its load and its speed.
     run : DataTree, optional
         A result of it, whose velocities in the bands of ISO 15242 are told, by part.
@@ -61,8 +62,9 @@ def bearing_sheet(name: str, keys: BearingKeys, run: DataTree | None = None) -> 
         If it does not carry its load.
     """
     speed = float(keys.speed or 0.0)
-    found = keys.bearing.loaded(keys.radial, keys.axial, speed=speed)
-    turning = keys.bearing.kinematics(speed or 1.0, contact_angle=found.contact_angle)
+    of = keys.bearing
+    found = of.loaded(keys.radial, keys.axial, speed=speed)
+    turning = of.kinematics(speed or 1.0, contact_angle=found.contact_angle)
     at_rest = tree(static_group(found, turning))
     load = f"{rounded(found.radial, 4)} N radially, {rounded(found.axial, 4)} N axially"
     at = f" at {rounded(60.0 * speed, 5)} 1/min" if speed else ""
@@ -70,34 +72,48 @@ def bearing_sheet(name: str, keys: BearingKeys, run: DataTree | None = None) -> 
     if run is not None and (bands := data.unless_missing(bands_table, run)):
         blocks.append(bands)
     blocks.append(ball_contacts_table(at_rest))
-    summary = f"Under {load}{at}: heaviest ball {rounded(found.inner_load.max())} N, "
+    summary = f"Under {load}{at}: heaviest {of.ELEMENT} {rounded(found.inner_load.max())} N, "
     peak = max(found.inner_pressure.max(), found.outer_pressure.max())
     summary += f"{rounded(peak / 1e9)} GPa, contact angle {rounded(math.degrees(found.contact_angle))}°."
-    return figures_page(f"Ball bearing {name}", summary, blocks, {})
+    return figures_page(f"{of.ELEMENT.capitalize()} bearing {name}", summary, blocks, {})
 
 
-def _geometry(keys: BearingKeys) -> ReportTable:
+def _geometry(keys: LoadKeys) -> ReportTable:
     of = keys.bearing
     listed = LISTED.get(keys.name or "")
     rows: list[tuple[str, str]] = []
     if listed is not None and listed.bore is not None:
         rows.append(("bore × outside diameter × width", f"{listed.cells[2]} mm"))
-    rows += [
-        ("balls", f"{of.balls} of {rounded(1e3 * of.ball_diameter, 5)} mm, {of.ball_material.name}"),
-        ("pitch diameter", f"{rounded(1e3 * of.pitch_diameter, 5)} mm"),
-        ("groove radii", f"{of.inner_conformity:g} D (inner), {of.outer_conformity:g} D (outer)"),
-        ("diametral clearance", f"{rounded(1e6 * of.radial_clearance)} µm"),
-        ("free contact angle", f"{rounded(math.degrees(of.free_angle))}°"),
-        ("preload", f"{rounded(of.preload)} N"),
-        ("rings", of.material.name),
-        ("mass of a ball", f"{rounded(1e3 * of.ball_mass)} g"),
-    ]
-    note = "Dimensions as given." if listed is None else listed.sentence
+    diameter = f"{rounded(1e3 * of.ball_diameter, 5)}"
+    pitch = "pitch diameter", f"{rounded(1e3 * of.pitch_diameter, 5)} mm"
+    clearance = "diametral clearance", f"{rounded(1e6 * of.radial_clearance)} µm"
+    angle = f"{rounded(math.degrees(of.free_angle))}°"
+    if isinstance(of, RollerBearing):
+        size = f"{diameter} × {rounded(1e3 * of.roller_length, 5)} mm"
+        drop = f", {rounded(1e6 * of.profile.drop)} µm" * (of.profile.drop > 0.0)
+        rows += [
+            ("rollers", f"{of.rollers} of {size}, {of.roller_material.name}"),
+            ("profile", f"{of.crowning}{drop}"),
+            *(pitch, clearance),
+            ("contact angle", angle),
+        ]
+    else:
+        rows += [
+            ("balls", f"{of.balls} of {diameter} mm, {of.ball_material.name}"),
+            pitch,
+            ("groove radii", f"{of.inner_conformity:g} D (inner), {of.outer_conformity:g} D (outer)"),
+            clearance,
+            ("free contact angle", angle),
+            ("preload", f"{rounded(of.preload)} N"),
+        ]
+    rows += [("rings", of.material.name), (f"mass of a {of.ELEMENT}", f"{rounded(1e3 * of.ball_mass)} g")]
+    as_given = PRINTED.get(keys.name or "", "Dimensions as given.")
+    note = as_given if listed is None else listed.sentence
     columns = {"of": text_cells(what for what, _ in rows), "value": text_cells(told for _, told in rows)}
     return table("geometry", "Geometry", columns, note)
 
 
-def _carried(keys: BearingKeys, speed: float) -> Iterator[tuple[float, LoadedBearing]]:
+def _carried(keys: LoadKeys, speed: float) -> Iterator[tuple[float, LoadedBearing]]:
     """The bearing at shares of its load, as far as it carries them."""
     preload = keys.bearing.preload
     with PhysicsWarning.ignored():
@@ -111,7 +127,7 @@ def _carried(keys: BearingKeys, speed: float) -> Iterator[tuple[float, LoadedBea
                 continue
 
 
-def _stiffness(keys: BearingKeys, speed: float) -> PageFigure:
+def _stiffness(keys: LoadKeys, speed: float) -> PageFigure:
     shares, found = zip(*_carried(keys, speed), strict=True)
     loads = np.hypot(keys.radial, keys.axial + keys.bearing.preload) * np.array(shares)
     means = np.array([np.diagonal(each.stiffness, axis1=1, axis2=2).mean(axis=0) for each in found])
@@ -126,8 +142,9 @@ def _stiffness(keys: BearingKeys, speed: float) -> PageFigure:
 
 
 def _tones(found: LoadedBearing, speed: float) -> ReportTable:
-    turning = found.bearing.kinematics(1.0, contact_angle=found.contact_angle)
-    names = ["cage", *(PART_NAMES[part] for part in PARTS)]
+    of = found.bearing
+    turning = of.kinematics(1.0, contact_angle=found.contact_angle)
+    names = ["cage", *(PART_NAMES[part].format(of.ELEMENT) for part in PARTS)]
     orders = np.array([turning.cage, *(turning.tone(part) for part in PARTS)])
     columns = {"of": text_cells(names), "turns of the shaft": number_cells(orders, "{:.4f}")}
     if speed:

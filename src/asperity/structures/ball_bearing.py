@@ -326,19 +326,7 @@ class BallBearing:
         angle = self.free_angle if pressed else 0.0
         least = max(angle - math.radians(10.0), 0.0)
         most = max(self.free_angle + math.radians(5.0), math.radians(15.0))
-        here = self.kinematics(1.0, contact_angle=angle).families
-        limits = [
-            self.kinematics(1.0, contact_angle=each, slip=slip)
-            for each in (least, angle, most)
-            for slip in (0.0, SLIP)
-        ]
-        found = {}
-        for part, (order, modulation) in here.items():
-            tones = [each.tone(part) for each in limits]
-            slower = 1.0 - SLIP if part == "ball" else 1.0  # its spin follows that of the cage
-            unlike = 2 if part == "ball" else 1  # a spot of it meets both rings in turn
-            found[part] = Tone(order, modulation, min(tones) * slower, max(tones), unlike)
-        return found
+        return tones_between(self, angle, least, most)
 
     def loaded(
         self,
@@ -380,6 +368,35 @@ class BallBearing:
         from asperity.structures.bearing_statics import load_distribution
 
         return load_distribution(self, radial, axial, speed, cage_angles)
+
+
+def tones_between(bearing: Any, angle: float, least: float, most: float) -> dict[str, Tone]:
+    """Tones of the parts of a bearing per turn at a contact angle, and their limits for a cage that lags.
+
+    Parameters
+    ----------
+    bearing : BallBearing or RollerBearing
+        The bearing.
+    angle, least, most : float
+        Contact angle, and its limits, rad.
+
+    Returns
+    -------
+    dict
+        `asperity.diagnostics.Tone` of ``"outer"``, ``"inner"`` and ``"ball"``.
+    """
+    limits = [
+        bearing.kinematics(1.0, contact_angle=each, slip=slip)
+        for each in (least, angle, most)
+        for slip in (0.0, SLIP)
+    ]
+    found = {}
+    for part, (order, modulation) in bearing.kinematics(1.0, contact_angle=angle).families.items():
+        tones = [each.tone(part) for each in limits]
+        slower = 1.0 - SLIP if part == "ball" else 1.0  # its spin follows that of the cage
+        unlike = 2 if part == "ball" else 1  # a spot of it meets both rings in turn
+        found[part] = Tone(order, modulation, min(tones) * slower, max(tones), unlike)
+    return found
 
 
 @dataclass(frozen=True)

@@ -13,18 +13,23 @@ from asperity.contact.hertz import relative_radius
 from asperity.contact.slices import FEWEST, SLICES, SlicedContact
 from asperity.parameters import Choice, MaterialOrName, Number, Quantity, checked_parameters, parameter
 from asperity.reference.materials import MATERIALS, Material, contact_modulus
-from asperity.structures.ball_bearing import FASTEST, HARDNESS, BallBearing, Kinematics
+from asperity.structures.ball_bearing import FASTEST, HARDNESS, BallBearing, Kinematics, tones_between
 from asperity.written_numbers import rounded
 
 if TYPE_CHECKING:
+    from asperity.diagnostics import Tone
     from asperity.structures.roller_statics import LoadedRollers
 
 ROLLER_BEARINGS: dict[str, dict[str, float]] = {
     "NU205": {"rollers": 13, "roller_diameter": 7.5e-3, "roller_length": 7.8e-3, "pitch_diameter": 39e-3},
 }
-"""By the keywords of `RollerBearing`, m. Of NU 205 the raceways, of 31.5 and 46.5 mm, and the static load
-rating, 27 kN, are usual ones that were not checked against a copy of a catalogue; how many rollers it has,
-and how long they carry, is not printed, and is chosen so that ISO 76 makes this rating of them."""
+"""By the keywords of `RollerBearing`, m."""
+PRINTED: dict[str, str] = {
+    "NU205": "Raceways of 31.5 and 46.5 mm and a static load rating of 27 kN are usual ones that were not "
+    "checked against a copy of a catalogue; how many rollers there are, and how long they carry, is not "
+    "printed, and is chosen so that ISO 76 makes this rating of them."
+}
+"""What of them is printed, and what is chosen."""
 CLEARANCE = 20e-6
 """Diametral clearance of the named bearings, m, chosen here."""
 STEEL = MATERIALS["steel"]
@@ -307,6 +312,21 @@ class RollerBearing:
         diameters = self.roller_diameter, self.pitch_diameter
         angle = self.contact_angle if contact_angle is None else contact_angle
         return Kinematics.rolling(self.rollers, diameters, angle, self.turning, speed=speed, slip=slip)
+
+    def tones(self, axial: bool = False) -> dict[str, Tone]:
+        """Tones of faults of its parts per turn, and how far slip may move them.
+
+        Parameters
+        ----------
+        axial : bool
+            Whether it carries an axial load, which leaves the angle of its contacts as it is.
+
+        Returns
+        -------
+        dict
+            As of `BallBearing.tones`, of raceways whose angle stays: for a cage that lags by up to 1 %.
+        """
+        return tones_between(self, *[self.contact_angle] * 3)
 
     def loaded(
         self,

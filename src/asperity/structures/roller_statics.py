@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from asperity.arguments import Array, ArrayLike, finite_array, not_negative, require
-from asperity.contact.slices import SlicedContact
+from asperity.contact.slices import EXPONENT, SlicedContact
 from asperity.errors import ComputationError, Grade, InputError, OutOfRangeWarning, percent
 from asperity.structures.bearing_statics import STEPS, speed_of_leaving
 from asperity.structures.least_energy import TOLERANCE, least_energy
@@ -85,6 +85,39 @@ class LoadedRollers:
     def outer_pressure(self) -> Array:
         """Largest pressures along the rollers at the outer ring (m, Z), Pa."""
         return self.bearing.outer_contact.pressures(self.outer_slices).max(axis=-1)
+
+    def damping(self, of_contact: float) -> Array:
+        """Damping matrices of the inner ring, held against tilt, by dampers of contacts along their normals.
+
+        Parameters
+        ----------
+        of_contact : float
+            Damping of one contact, N s/m.
+
+        Returns
+        -------
+        ndarray (m, 3, 3)
+            Along the radial load, across it, axially; symmetric.
+
+        Notes
+        -----
+        As of `asperity.structures.bearing_statics.LoadedBearing.damping`: far below the frequency at which
+        rollers ring between the rings one follows by the share s = k_i/(k_i + k_o) of what overlaps, without
+        tilt, and the dampers of both contacts take what (1 − s)² and s² of it leave. A slice of the load q is
+        as stiff as 10/9 q^(1/10) (c/n)^(9/10).
+        """
+        of_contact = not_negative("damping of a contact (N s/m)", of_contact)
+        of = self.bearing
+        stiff = []
+        for contact, slices in ((of.inner_contact, self.inner_slices), (of.outer_contact, self.outer_slices)):
+            of_slice = (contact.stiffness_constant / contact.slices) ** (1.0 / EXPONENT)
+            root = np.where(slices > 0.0, slices ** (1.0 - 1.0 / EXPONENT), 0.0)
+            stiff.append(EXPONENT * of_slice * root.sum(axis=-1))
+        inner, outer = stiff
+        follows = inner / np.where(outer > 0.0, inner + outer, 1.0)
+        taken = of_contact * ((1.0 - follows) ** 2 * (inner > 0.0) + follows**2 * (outer > 0.0))
+        normal = _followed(of, self.azimuth)[..., 0, FORCES]
+        return np.asarray(np.einsum("mz,mzi,mzj->mij", taken, normal, normal))
 
     @property
     def carrying_length(self) -> Array:

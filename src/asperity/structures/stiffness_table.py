@@ -1,4 +1,4 @@
-"""Stiffness and damping of a ball bearing over load, speed and cage angle, for programs of rotors."""
+"""Stiffness and damping of a bearing over load, speed and cage angle, for programs of rotors."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import numpy as np
 
 from asperity.arguments import Array, ArrayLike, finite_array
 from asperity.files import write_bytes
-from asperity.structures.ball_bearing import BallBearing
+from asperity.structures.roller_bearing import AnyBearing
 from asperity.text_files import write_csv
 
 AXES = ("x", "y", "z")
@@ -37,8 +37,8 @@ class BearingMatrices:
 
     Attributes
     ----------
-    bearing : BallBearing
-        Whose they are.
+    bearing : BallBearing or RollerBearing
+        Whose they are; a ring on rollers is held against tilt.
     radial, axial : ndarray (a,), (b,)
         Loads on the inner ring, N.
     speed : ndarray (s,)
@@ -57,7 +57,7 @@ class BearingMatrices:
         Of the inner ring, m.
     """
 
-    bearing: BallBearing
+    bearing: AnyBearing
     radial: Array
     axial: Array
     speed: Array
@@ -112,7 +112,7 @@ class BearingMatrices:
     def _document(self) -> dict[str, Any]:
         angles = None if self.cage_angle is None else self.cage_angle.tolist()
         return {
-            "what": "stiffness and damping of a ball bearing",
+            "what": f"stiffness and damping of a {self.bearing.ELEMENT} bearing",
             "signs": SIGNS,
             "units": {
                 "k": "N/m",
@@ -151,7 +151,7 @@ def _without_rounding(matrices: Array) -> Array:
 
 
 def stiffness_table(
-    bearing: BallBearing,
+    bearing: AnyBearing,
     radial: ArrayLike = 0.0,
     axial: ArrayLike = 0.0,
     speed: ArrayLike = 0.0,
@@ -164,7 +164,7 @@ def stiffness_table(
 
     Parameters
     ----------
-    bearing : BallBearing
+    bearing : BallBearing or RollerBearing
         The bearing.
     radial, axial : array_like (a,), (b,)
         Loads on the inner ring, N.
@@ -186,7 +186,7 @@ def stiffness_table(
     Raises
     ------
     InputError
-        Of a combination that the bearing does not carry, as `BallBearing.loaded` says it.
+        Of a combination that the bearing does not carry, as its `loaded` says it.
     """
     axes = [
         finite_array(what, np.atleast_1d(np.asarray(values, dtype=float)), shape=(None,))
@@ -203,8 +203,9 @@ def stiffness_table(
     def at(place: Sequence[int]) -> list[Array]:
         loads = [float(axis[n]) for axis, n in zip(axes, place, strict=True)]
         found = bearing.loaded(loads[0], loads[1], speed=loads[2], cage_angles=angles)
-        matrices = [turn @ each @ turn.T for each in (found.stiffness, found.damping(contact_damping))]
-        of = [*matrices, found.displacement @ turn.T]
+        held = found.stiffness[:, :3, :3]  # against tilt, which rings on rollers resist
+        matrices = [turn @ each @ turn.T for each in (held, found.damping(contact_damping))]
+        of = [*matrices, found.displacement[:, :3] @ turn.T]
         return of if angles is not None else [each.mean(axis=0, keepdims=True) for each in of]
 
     sizes = tuple(axis.size for axis in axes)

@@ -7,8 +7,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from asperity.arguments import positive, require
-from asperity.structures.ball_bearing import PARTS, BallBearing
+from asperity.structures.ball_bearing import PARTS
 from asperity.structures.bearing_statics import LoadedBearing
+from asperity.structures.roller_bearing import AnyBearing
+from asperity.structures.roller_statics import LoadedRollers
 
 BELOW = 0.5
 """Share of the frequency of the outer ring on its balls up to which it follows waves as it would at rest: at
@@ -45,15 +47,15 @@ class WaveTolerance:
     amplitude: float
 
 
-def ring_frequency(found: LoadedBearing, outer_mass: float) -> float:
+def ring_frequency(found: LoadedBearing | LoadedRollers, outer_mass: float) -> float:
     """Natural frequency, Hz, of a free outer ring, kg, that moves radially on its balls."""
     stiffness = float(found.stiffness[:, 0, 0].mean())
     return math.sqrt(stiffness / positive("mass of the outer ring (kg)", outer_mass)) / (2.0 * math.pi)
 
 
 def wave_tolerances(
-    bearing: BallBearing,
-    found: LoadedBearing,
+    bearing: AnyBearing,
+    found: LoadedBearing | LoadedRollers,
     speed: float,
     limits: Sequence[float],
     bands: Sequence[tuple[float, float]],
@@ -64,10 +66,10 @@ def wave_tolerances(
 
     Parameters
     ----------
-    bearing : BallBearing
+    bearing : BallBearing or RollerBearing
         The bearing.
-    found : LoadedBearing
-        It under its axial load, at which all balls touch.
+    found : LoadedBearing or LoadedRollers
+        It under its load, under which all balls or rollers touch.
     speed : float
         Of the ring that turns, turns per second.
     limits : sequence of float
@@ -85,7 +87,7 @@ def wave_tolerances(
     Raises
     ------
     InputError
-        If some ball does not touch, as under a radial load.
+        If some ball or roller does not touch, as under a radial load.
 
     Notes
     -----
@@ -96,8 +98,9 @@ def wave_tolerances(
     to the velocity of one wave, and energies of several add. F. P. Wardle, Proc. IMechE 202 C (1988) 305.
     """
     touching = float(found.touching.min())
-    allowed = "a load under which all touch, an axial one"
-    require(touching == bearing.balls, "load", f"{touching:g} of {bearing.balls} balls that touch", allowed)
+    received = f"{touching:g} of {bearing.balls} {bearing.ELEMENT}s that touch"
+    allowed = "a load under which all touch, an axial one, or a clearance below zero"
+    require(touching == bearing.balls, "load", received, allowed)
     turning = bearing.kinematics(speed, contact_angle=found.contact_angle)
     lowest = min(low for low, _ in bands)
     highest = min(highest, max(high for _, high in bands))

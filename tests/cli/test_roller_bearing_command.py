@@ -1,0 +1,138 @@
+"""``asperity bearing`` of a roller bearing: what it prints, writes and refuses, in words of rollers."""
+
+import csv
+import json
+import re
+
+import numpy as np
+import pytest
+from scipy.io import wavfile
+
+from asperity import RollerBearing
+from asperity.case.cases import as_case
+from command_line import call
+from faulty_signals import faulty_signal
+
+LOADED = ("bearing", "NU205", "--radial", "2 kN", "--speed", "1800 1/min")
+TAPERED = """
+rollers = 15
+roller_diameter = "7 mm"
+roller_length = "10 mm"
+pitch_diameter = "45 mm"
+contact_angle = "14 deg"
+axial = "2 kN"
+speed = "1800 1/min"
+"""
+
+
+@pytest.fixture
+def tapered(tmp_path):
+    (path := tmp_path / "own.toml").write_text(TAPERED)
+    return str(path)
+
+
+def test_geometry_load_stiffness_and_tones_are_said_of_rollers():
+    said = call(*LOADED).stdout
+    assert said.startswith(
+        "NU205: 13 rollers of 7.5 × 7.8 mm, logarithmic profile of 2.62 µm, pitch diameter"
+    )
+    assert "is chosen so that ISO 76 makes this rating of them" in said
+    assert re.search(r"BPFO: rollers pass a spot of it", said)
+    assert re.search(r"roller +│ 150.2 +│ 5.0077 │ 2 BSF", said)
+    assert "4 to 5 of 13 rollers touch the inner ring" in said
+    assert "7.04 of 7.8 mm touch the inner ring; rings are held against tilt" in said
+    assert "ball" not in said
+    assert "Waviness" not in said  # under an axial load, which nothing carries
+
+
+def test_numbers_for_programs_are_those_of_the_bearing():
+    told = json.loads(call(*LOADED, "--json").stdout)
+    found = RollerBearing.named("NU205").loaded(2000.0, speed=30.0)
+    assert told["balls"]["inner_load"] == pytest.approx(found.inner_load[0].tolist())
+    assert told["tones"]["outer"] == pytest.approx(157.5)
+
+
+def test_of_a_file_and_of_a_case_the_bearing_is_on_rollers(tapered, tmp_path):
+    said = call("bearing", tapered).stdout
+    assert ": 15 rollers of 7 × 10 mm" in said
+    assert "contact angle 14°" in said
+    assert re.search(r"roller +│ 2 +│", said)  # waviness
+    case = as_case({"kind": "roller-bearing", "radial": "1 kN", "bearing": {"name": "NU205", "rollers": 11}})
+    (path := tmp_path / "case.toml").write_text(case.to_toml())
+    said = call("bearing", str(path)).stdout
+    assert "11 rollers" in said
+    assert "under 1000 N radial" in said
+
+
+def test_films_are_those_of_lines():
+    assert "Films of oil" in call(*LOADED, "--oil", "ISO VG 68").stdout
+
+
+def test_the_list_names_roller_bearings():
+    assert "Roller bearings: NU205." in call("bearing", "--list").stdout
+
+
+def test_a_data_sheet_is_of_rollers(tmp_path):
+    call(*LOADED, "--sheet", str(path := tmp_path / "sheet.html"))
+    page = path.read_text()
+    for words in (
+        "Roller bearing NU205", "13 of 7.5 × 7.8 mm, steel", "logarithmic, 2.62 µm", "mass of a roller",
+        "roller, on both rings (2 BSF)", "heaviest roller 8", "is chosen so that ISO 76",
+    ):  # fmt: skip
+        assert words in page
+    assert "groove" not in page
+
+
+def test_a_table_has_stiffness_and_damping_of_a_ring_held_against_tilt(tmp_path):
+    path = tmp_path / "k.csv"
+    options = ("--radial", "1 kN, 2 kN", "--damping", "20 N s/m", "--cage-angle", "0 deg")
+    assert (
+        "The inner ring is held against tilt."
+        in call("bearing", "NU205", *options, "--table", str(path)).stdout
+    )
+    rows = list(csv.DictReader(path.read_text().splitlines()))
+    found = RollerBearing.named("NU205").loaded(2000.0, cage_angles=[0.0])
+    assert float(rows[1]["kxx (N/m)"]) == pytest.approx(found.stiffness[0, 0, 0], rel=1e-9)
+    assert float(rows[1]["cxx (N s/m)"]) == pytest.approx(found.damping(20.0)[0, 0, 0], rel=1e-9)
+
+
+def test_waves_have_limits_where_all_rollers_touch():
+    limits = ("--limits", "50 um/s, 30 um/s, none", "--outer-mass", "60 g")
+    pressed = ("--clearance", "-4 um", "--radial", "10 N", "--speed", "1800 1/min")
+    said = call("bearing", "NU205", *pressed, *limits).stdout
+    velocity = 2.0 * np.pi * 157.5 / np.sqrt(2.0)  # of the ring on a circle of 1 m
+    assert re.search(
+        rf"outer ring │ 12 +│ 157.5 +│ 50 to 300 +│ {velocity:.0f} +│ {5e4 / velocity:.1f}", said
+    )
+    assert "follows its rollers up to" in said
+    assert re.search(r"│ roller +│ 2 +│ 138.1, 162.3", said)
+    said = call(*LOADED, *limits, code=2).stderr
+    assert (
+        "load: received 4 of 13 rollers that touch; allowed: a load under which all touch, an axial one"
+        in said
+    )
+
+
+def test_a_signal_is_read_by_tones_of_rollers(tmp_path):
+    rate = 12_000
+    signal = faulty_signal("outer", 30.0, rate, 5.0, bearing=(13, 7.5 / 39.0), angle=0.0)
+    wavfile.write(path := tmp_path / "run.wav", rate, signal.astype(np.float32))
+    said = call(
+        "bearing", "NU205", "--speed", "1800 1/min", "--signal", str(path), "--known", "roller"
+    ).stdout
+    assert re.search(r"lines of the outer ring at 15[67]\.", said)
+    assert "Of the fault of the roller that is known to be there" in said
+    assert said.strip().endswith("How sure rests on records of ball bearings.")
+    of_balls = ("bearing", "6205", "--speed", "1800 1/min", "--signal", str(path), "--known", "roller")
+    assert (
+        "--known: received roller; allowed: outer, inner or ball of a ball" in call(*of_balls, code=2).stderr
+    )
+
+
+@pytest.mark.parametrize(("words", "message"), [
+    (("NU206",), "Did you mean .* Named roller bearings: NU205."),
+    (("NU205", "--axial", "100 N"), "axial load: received 100 N; allowed: 0 N where contact_angle is 0"),
+    (("NU205",), "load: received none; allowed: a radial or axial load"),
+])  # fmt: skip
+def test_what_no_roller_bearing_carries_is_refused(words, message):
+    assert re.search(message, call("bearing", *words, code=2).stderr)
