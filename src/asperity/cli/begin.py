@@ -121,7 +121,7 @@ def wheel(section: str, highest: str | None, table: Path | None, picture: Path |
 
 
 @_begin(
-    "What a ball bearing carries, its tones, and what its signal says.",
+    "What a bearing carries, its tones, and what its signal says.",
     params=commands.BEARING,
     long_work=True,
 )
@@ -135,10 +135,11 @@ def bearing(
     signal: tuple[Path, ...],
     **choices: Any,
 ) -> Document:
-    """Say how a ball bearing carries a load at rest, and its tones; or which of them a signal holds.
+    """Say how a bearing carries a load at rest, and its tones; or which of them a signal holds.
 
     A bearing has a NAME, or its dimensions stand in a FILE (TOML): balls, ball_diameter, pitch_diameter,
-    inner_conformity, outer_conformity, clearance or contact_angle, preload, material, turning, radial, …
+    inner_conformity, outer_conformity, clearance or contact_angle, preload, material, turning, radial, …; of
+    a roller bearing rollers, roller_diameter, roller_length, pitch_diameter, contact_angle, crowning, …
 
     Several files of one measurement, at one speed, are judged one by one and all together.
 
@@ -148,6 +149,8 @@ def bearing(
     asperity bearing --list
     # loads, contact ellipses, pressures, stiffness, tones
     asperity bearing 6205 --radial '100 N' --speed '1797 1/min'
+    # the same of a roller bearing
+    asperity bearing NU205 --radial '2 kN' --speed '1800 1/min'
     # films of oil, too
     asperity bearing 6205 --radial '100 N' --speed '1797 1/min' --oil 'ISO VG 68' --temperature '60 degC'
     # loads of the balls as a picture
