@@ -13,6 +13,7 @@ from asperity.reporting.contact_figures import contact_pressure
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.rim_cells import stiffness_missed
 from asperity.studies.member import kept
+from asperity.surfaces.cell_means import cell_means, pressed_heights
 from refusals import refusals
 from small_cases import changed
 
@@ -81,6 +82,39 @@ def test_the_force_keeps_a_bound_of_second_order_and_the_area_is_close():
     assert max(error[1] for error in errors) < 5e-4
 
 
+@pytest.mark.parametrize("seed", [1, 2])
+def test_forces_and_stiffness_of_a_rough_ball_are_nearer_to_fine_cells_than_on_whole_ones(seed):
+    """Waves of 5 to 20 cells, 0.1 approaches rms: on means the force is too small, on middles too large."""
+    across, parts, approaches, rng = 9, 5, np.linspace(0.85, 1.15, 5), np.random.default_rng(seed)
+    points = 2 * math.ceil(1.6 * across) + 3
+    x = (np.arange(parts * points) - 0.5 * (parts * points - 1)) / (parts * across)
+    wave = [
+        rng.normal() * np.cos(np.add.outer(k * x, m * x) + 6.3 * rng.random())
+        for k, m in rng.normal(0.0, 5.0, (30, 2))
+    ]
+    texture, ball = 0.1 * sum(wave) / math.sqrt(15.0), 0.5 * np.add.outer(x**2, x**2)
+
+    def forces(gap, cells="covered"):
+        space = HalfSpace(gap.shape, points / across / len(gap), 1.0, cells=cells)
+        gap = np.ascontiguousarray(gap)
+        return np.array([space.solve(gap, approach=d, rtol=1e-7).force for d in approaches])
+
+    middle = slice(parts // 2, None, parts)
+    rough, smooth = texture[middle, middle], ball[middle, middle]
+    bent = cell_means(smooth)
+    exact, whole = forces(ball + texture), forces(smooth + rough, "whole")
+    found = {"pressed": pressed_heights(rough), "means": cell_means(rough), "middles": rough}
+    off = {name: forces(bent + heights) / exact - 1.0 for name, heights in found.items()}
+    assert off["means"].max() < 0.0 < off["middles"].min()
+    assert np.abs(off["pressed"]).max() < 0.7 * np.abs(whole / exact - 1.0).max()
+    assert np.abs(off["pressed"]).max() < 1e-3
+    steps = [
+        np.abs(np.diff(each) / np.diff(exact) - 1.0).max()
+        for each in (forces(bent + found["pressed"]), whole)
+    ]
+    assert steps[0] < 0.8 * steps[1]
+
+
 def test_a_load_and_its_approach_belong_together():
     half_space, gap = ball_on_cells(6, (0.2, 0.4))
     given = half_space.solve(gap, approach=1.0, rtol=1e-9)
@@ -97,7 +131,7 @@ def test_a_case_of_covered_cells_rolls_by_table_as_by_direct():
     tree = run(changed("ball-on-beam", **of))
     told = tree["contact"].attrs
     assert told["rim_cells"] == "covered"
-    assert re.fullmatch(r"the texture has 0\.0\d+ approaches rms .*, up to 0\.05", told["rim_cells_chosen"])
+    assert re.fullmatch(r"the texture has 0\.0\d+ approaches rms .*, up to 0\.1", told["rim_cells_chosen"])
     assert kept(tree).attrs["rim_cells"] == "covered"
     count = f"Cells at rims count as covered: {told['rim_cells_chosen']}."
     assert count in contact_pressure.drawn(tree).caption

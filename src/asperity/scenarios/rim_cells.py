@@ -12,15 +12,12 @@ from asperity.scenarios.reducing import samples_of
 from asperity.scenarios.scene import PreparedCase
 from asperity.written_numbers import rounded
 
-ROUGHEST_COVERED = 0.05
+SMOOTH = 0.1
 """Rms height within the patch, in approaches, up to which covered cells are chosen.
 
-With nine in the half-width, force and stiffness are nearer to those of finer grids than on whole cells up to
-0.08 where waves are short, farther where they are not: ``benchmarks/cell_rims.py --choice``.
+Few cells enter there as the force varies, and with nine in the half-width force and stiffness are nearer to
+those of finer grids than on whole cells, however short waves are: ``benchmarks/cell_rims.py --choice``.
 """
-
-SMOOTH = 0.1
-"""Rms height within the patch, in approaches, below which few cells enter as the force varies."""
 AT_SIX, ORDER, SLENDER = 0.042, 1.4, 0.82
 """Share by which six whole cells in the half-width of a contact miss the stiffness of a ball at most; powers
 with which that falls with their number, and with the slenderness of an ellipse.
@@ -30,7 +27,7 @@ From ``benchmarks/cell_rims.py --check``.
 
 
 def with_rims(prepared: PreparedCase) -> PreparedCase:
-    """The case with means over its cells where those at rims count as far as they are covered."""
+    """The case with gaps of cells, not of points, where those at rims count as far as they are covered."""
     cells = prepared.case.contact.rim_cells
     why = ""
     if cells == "auto":
@@ -52,9 +49,9 @@ def _chosen(prepared: PreparedCase) -> tuple[str, str]:
     if find_device() is not None:
         return "whole", "the device gpu has no others"
     within = roughness_within(samples_of(case, shape, maps, shape.class_axes), shape)
-    smooth = within <= ROUGHEST_COVERED
+    smooth = within <= SMOOTH
     side = "up to" if smooth else "more than"
-    why = f"the texture has {rounded(within, 2)} approaches rms within the contact, {side} {ROUGHEST_COVERED}"
+    why = f"the texture has {rounded(within, 2)} approaches rms within the contact, {side} {SMOOTH}"
     return "covered" if smooth else "whole", why
 
 

@@ -19,7 +19,7 @@ from asperity.scenarios.geometry import Geometry, cells_over, window_cells
 from asperity.scenarios.records import Grid, Record
 from asperity.speeds import SpeedCourse
 from asperity.surfaces import levelling, measured_lines, statistics, synthesis
-from asperity.surfaces.cell_means import MeansOverCells, cell_means
+from asperity.surfaces.cell_means import PressedStrip, pressed_heights
 from asperity.surfaces.defects import FlatShape, corrugation, dipped_joint, flat_geometry, flat_trajectory
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.strip import LongStrip, Raised, Rows, Strip, raised, turning
@@ -65,13 +65,13 @@ class Textures:
     # what the random numbers of each part belong to: parts for which it is the same were drawn alike
     drawn: dict[str, str] = field(default_factory=dict)
     untouched: "Textures | None" = None  # as they were before running-in; None where they still are
-    points: "Textures | None" = None  # at the points of the grid, where these are means over its cells
+    points: "Textures | None" = None  # at the points of the grid, where these are those of covered cells
 
     def over_cells(self) -> "Textures":
-        """The same with means over cells of what is pressed; what is followed as a line is not averaged."""
-        maps = tuple(_mean_of(each) for each in self.maps)
-        strips = maps if self.strips is self.maps else tuple(_mean_of(each) for each in self.strips)
-        path = None if self.path is None else MeansOverCells(self.path)
+        """The same with heights of covered cells of what is pressed; what is followed as a line stays."""
+        maps = tuple(_pressed(each) for each in self.maps)
+        strips = maps if self.strips is self.maps else tuple(_pressed(each) for each in self.strips)
+        path = None if self.path is None else PressedStrip(self.path)
         return replace(self, maps=maps, strips=strips, path=path, points=self)
 
     @property
@@ -177,8 +177,8 @@ def textures_of(case: Case) -> Textures:
     return replace(textures, **_defects(case, 0, textures))
 
 
-def _mean_of(sample: HeightMap) -> HeightMap:
-    return replace(sample, heights=cell_means(sample.heights))
+def _pressed(sample: HeightMap) -> HeightMap:
+    return replace(sample, heights=pressed_heights(sample.heights))
 
 
 def other_contacts(case: Case, loads: Array) -> tuple[list[int], list[tuple[int, float]]]:
@@ -215,7 +215,7 @@ def textures_under(case: Case, contact: int, first: Textures) -> Textures:
     if points is not None:
         if points.path is not None:
             points = replace(points, path=turning(points.path, change, -before))
-        change = cell_means(np.pad(change, ((1, 1), (0, 0)), mode="wrap"))[1:-1]
+        change = pressed_heights(np.pad(change, ((1, 1), (0, 0)), mode="wrap"))[1:-1]
     along = np.arange(rows) - before
     added = (turns[1][:, middle] - turns[0][:, middle])[along % len(change)]
     path = None if first.path is None else turning(first.path, change, -before)

@@ -293,7 +293,7 @@ def _whole_cells(prepared: PreparedCase, pressed: PressedSamples) -> Iterator[Fi
     missed = rim_cells.stiffness_missed(shape)
     samples = [shape.body - each.undeformed_gap for each in pressed.contacts]
     within = rim_cells.roughness_within(samples, shape)
-    if within < rim_cells.SMOOTH:
+    if within <= rim_cells.SMOOTH:
         cells = rounded(min(shape.semi_axes) / case.contact.spacing, 2)
         level = 20.0 * math.log10(1.0 + missed)
         yield Finding(
