@@ -10,7 +10,7 @@ import numpy as np
 
 from asperity.arguments import Array, ArrayLike, finite_array, require
 from asperity.errors import InputError
-from asperity.written_numbers import count_of
+from asperity.written_numbers import count_of, rounded
 
 MOST_POINTS = 600
 """Points of a course: a case file holds so many."""
@@ -135,6 +135,11 @@ def reached(speed: float, distance: float) -> float:
 def slowest(speed: float) -> float:
     """A speed that is constant, or the slowest of one that is not."""
     return speed.slowest if isinstance(speed, SpeedCourse) else speed
+
+
+def at_fastest(speed: float, unit: str = "m/s", factor: float = 1.0) -> str:
+    """Of which speed a number is that takes one which changes at its fastest; nothing of a constant one."""
+    return f", at the fastest, {rounded(factor * speed, 5)} {unit}" if isinstance(speed, SpeedCourse) else ""
 
 
 def speed_at(speed: float, time: Array) -> Array:

@@ -14,6 +14,7 @@ from refusals import refusals
 TIGHT = {"name": "6205", "clearance": "-4 um"}
 BEARING = {"radial": "100 N", "bearing": {"name": "6205"}}
 RUN_UP = "600..1800 1/min in 0.5 s"
+AT = ", at the fastest, 1800 1/min"
 
 
 def turning(speed, **keys):
@@ -117,5 +118,9 @@ def test_what_is_planned_of_a_run_up_says_of_which_speed_tones_are():
     rows, rows_at_one_speed = (
         dict(expected(prepare_bearing(turning(speed)))[0]) for speed in (RUN_UP, "1800 1/min")
     )
-    assert rows["tones"] == rows_at_one_speed["tones"] + " at the fastest"
+    assert rows["tones"] == rows_at_one_speed["tones"] + AT
+    oil = {"oil": "ISO VG 68"}
+    films = dict(expected(prepare_bearing(turning(RUN_UP, lubricant=oil, rotating="5 N")))[0])
+    assert any(each.startswith("film, inner ring") and each.endswith(AT) for each in films)
+    assert films["load that turns"].endswith(f"33.33 ms{AT}")
     assert rows["runs"] == "table, areal, hertz"

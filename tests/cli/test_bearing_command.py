@@ -101,6 +101,17 @@ def test_a_bearing_of_ones_own_and_options_that_are_stronger():
     assert "per turn" in call("bearing", "6205", "--axial", "10 N").stdout
 
 
+def test_of_a_case_whose_speed_changes_it_says_that_it_takes_the_fastest():
+    case = {"kind": "ball-bearing", "speed": "600..1800 1/min in 1 s", "radial": "100 N"}
+    Path("run_up.toml").write_text(as_case(case | {"bearing": {"name": "6205"}}).to_toml())
+    told = words_of(call("bearing", "run_up.toml").output)
+    assert "The speed of run_up.toml changes, 600 to 1800 1/min: what follows is that at the fastest," in told
+    assert "Hz at 1800 1/min" in told
+    typed = words_of(call("bearing", "run_up.toml", "--speed", "900 1/min").output)
+    assert "changes" not in typed
+    assert "Hz at 900 1/min" in typed
+
+
 def test_a_fault_is_heard_and_drawn_with_the_kurtogram_that_its_band_is_from(drawn):
     said = words_of(heard(pulses(108.0) + shaft(29.95), "-o", "b.png"))
     assert said.endswith(" % sure.")

@@ -6,8 +6,11 @@ import numpy as np
 import pytest
 
 from asperity import Beam, Bodies, ModalStructure, Profile, Wheel, WheelOnRail, errors, material
+from asperity.reporting import data
+from asperity.running import prepare_case
 from asperity.scenarios.scene import scene_of
 from asperity.scenarios.textures import other_contacts, textures_of, textures_under
+from asperity.scenes.figures.motion import body_acceleration
 from asperity.scenes.over_frequency import passing_frequencies
 
 ROUGH = {"rms": "0.05 um", "longest": "0.4 mm", "shortest": "80 um"}
@@ -108,6 +111,36 @@ def test_equal_distances_have_passing_tones():
     assert passing_frequencies([0.0, 0.02, 0.04], 1.0, 180.0) == pytest.approx([50.0, 100.0, 150.0])
     assert passing_frequencies([0.0, 0.02, 0.05], 1.0, 180.0).size == 0
     assert passing_frequencies([0.0], 1.0, 180.0).size == 0
+
+
+RUN_UP = {
+    "over": "plane", "speed": "10..20 m/s in 0.2 s", "laws": ["linear"], "settling": "5 ms",
+    "surface": {"corrugation": "1 um", "corrugation_wavelength": "20 mm"},
+    "contact": {"spacing": "0.8 mm", "window": "20 mm"},
+}  # fmt: skip
+"""Bodies that pass a wave at 500 to 1000 Hz."""
+
+
+def test_of_a_speed_that_changes_pages_say_of_which_one_frequencies_are(runs):
+    """Two contacts 2 m apart pass a place with v/2 m, 10 Hz at the fastest; so do orders of a turn."""
+    tree = runs(case_of(BOGIE | {"radius": 0.46, "distance": "2 m"}, **RUN_UP))
+    assert tree["spectra"].to_dataset()["passing_frequency"].values[0] == pytest.approx(10.0)
+    assert data.at_its_fastest(tree) == ", at the fastest, 20 m/s"
+    said = body_acceleration.drawn(tree).caption
+    assert "multiples of the 10 Hz at which contacts pass a place, at the fastest, 20 m/s;" in said
+    steady = runs(case_of(BOGIE | {"radius": 0.46, "distance": "2 m"}, **RUN_UP | {"speed": 20.0}))
+    assert data.at_its_fastest(steady) == ""
+    assert "contacts pass a place; ten" in body_acceleration.drawn(steady).caption
+
+
+@pytest.mark.parametrize(("wavelength", "doubted"), [("20 m", True), ("0.5 m", False), ("1.5 m", False)])
+def test_a_wave_is_doubted_where_it_is_heard_at_no_speed_of_a_course(wavelength, doubted):
+    """1.5 m are passed at 6.7 Hz where it is slowest, and at 13 Hz where it is fastest."""
+    surface = {"corrugation": "1 um", "corrugation_wavelength": wavelength}
+    prepared = prepare_case(case_of(WHEEL, **RUN_UP | {"surface": surface}))
+    told = [str(each.message) for each in prepared.caught if "corrugation_wavelength" in str(each.message)]
+    assert bool(told) == doubted
+    assert not doubted or "it is passed at 0.5 to 1 Hz" in told[0]
 
 
 # --- what is rolled over

@@ -44,7 +44,7 @@ def test_the_pit_is_found_over_angle_at_its_order(tree):
     assert found.attrs["envelope_speed"] == pytest.approx(LAST)
     lines = found["line_frequency"].values[0, 0] / LAST
     assert lines == pytest.approx(ORDER * np.arange(1, 6), abs=0.5 / 8.75)
-    assert f"({lines[0] * LAST:.4g} Hz at 4500 1/min)" in tree.attrs["verdict"]
+    assert f"({lines[0] * LAST:.4g} Hz, at the fastest, 4500 1/min)" in tree.attrs["verdict"]
     order, amplitude = found["order"].values, found["order_amplitude"].values[0]
     near = np.abs(order / ORDER - np.round(order / ORDER)) * ORDER
     low = (order > 0.6 * ORDER) & (order < 4.4 * ORDER)

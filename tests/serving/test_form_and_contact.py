@@ -171,6 +171,16 @@ def test_the_most_loaded_ball_of_a_bearing_is_pressed_on_its_raceway():
     assert smooth.passing == pytest.approx(pace / (2.0 * along), rel=0.01)
 
 
+@pytest.mark.parametrize(
+    ("speed", "at"), [("600..1800 1/min in 1 s", ", at the fastest, 1800 1/min"), ("1800 1/min", "")]
+)
+def test_waves_pass_a_contact_at_the_fastest_of_a_speed_that_changes(speed, at):
+    case = {"kind": "ball-bearing", "speed": speed, "radial": "100 N", "bearing": {"name": "6205"}}
+    told = PressedSample(case_of(case)).described()
+    assert told["passing_at"] == at
+    assert told["passing"] == pytest.approx(PressedSample(case_of(case | {"speed": "1800 1/min"})).passing)
+
+
 def test_a_bearing_that_was_run_is_shown_with_its_figures(runs, tmp_path):
     file = asperity.save(runs(BEARING), tmp_path / "run.nc")
     shown = viewed_run(str(file))

@@ -12,8 +12,11 @@ from asperity.case.body import DAMPING
 from asperity.case.form import Section, section
 from asperity.case.lubricant import LubricantKeys, RollerLubricantKeys
 from asperity.case.roller_bearing import RollerBearingUnderLoad, RollerGeometry
+from asperity.case.speed import span_of
+from asperity.errors import OutOfRangeWarning
 from asperity.parameters import Origin, Quantity, key, optional
 from asperity.reference.bearings import LISTED, named_bearings
+from asperity.speeds import SpeedCourse, at_fastest
 from asperity.structures.roller_bearing import ROLLER_BEARINGS
 
 SPEEDS = "0 Hz to 10 kHz: bearings turn slower"
@@ -61,13 +64,22 @@ def _read(keys: Mapping[str, Any], source: str) -> LoadKeys:
     return (RollerBearingKeys if of_rollers else BearingKeys).read(keys, Origin.file(source))
 
 
-def _of_case(keys: dict[str, Any], source: str) -> dict[str, Any]:
-    """Bearing and load of a file; of a case that is read as one what concerns them."""
+def _of_case(keys: dict[str, Any], source: str, options: Mapping[str, Any]) -> dict[str, Any]:
+    """Bearing and load of a file; of a case that is read as one what concerns them.
+
+    A speed that changes stands there at its fastest, which is told unless options have another.
+    """
     toml.refuse_vast(keys, source)
     if "kind" not in keys:
         return keys
     on_rollers = keys["kind"] == "roller-bearing"
     case = (RollerBearingUnderLoad if on_rollers else BearingUnderLoad).read(keys, Origin.file(source))
+    if isinstance(case.speed, SpeedCourse) and options.get("speed") is None:
+        span = span_of(case.speed, 60.0)
+        OutOfRangeWarning.warn(
+            f"The speed of {source} changes, {span} 1/min: what follows is that"
+            f"{at_fastest(case.speed, '1/min', 60.0)[1:]}. Take --speed for another."
+        )
     carried = {name: f"{float(getattr(case, name))!r} {unit}" for name, unit in CARRIED.items()}
     carried["contact_damping"] = f"{0.5 * sum(case.dampings)!r} N s/m"
     return dict(keys.get("bearing", {})) | carried | {"lubricant": keys.get("lubricant", {})}
@@ -77,7 +89,7 @@ def bearing_of_run(text: str, source: str) -> LoadKeys:
     """Bearing, load and speed of a run by the text of its case, whose files need no longer be there."""
     keys = toml.read_toml(text, "case", source)
     own = {name: keys[name] for name in ("kind", "bearing", "lubricant", *CARRIED) if name in keys}
-    return _read(_of_case(own, source), source)
+    return _read(_of_case(own, source, {}), source)
 
 
 def read_bearing(source: str, options: Mapping[str, Any]) -> LoadKeys:
@@ -86,7 +98,7 @@ def read_bearing(source: str, options: Mapping[str, Any]) -> LoadKeys:
     if source not in LISTED and source not in ROLLER_BEARINGS:
         remedy = f"{named_bearings(source)} {RollerGeometry.names_in_words()}"
         definition = toml.read_definition(source, "bearing", remedy)
-        keys = _of_case(toml.read_toml(definition, "bearing", source), source)
+        keys = _of_case(toml.read_toml(definition, "bearing", source), source, options)
     typed: dict[str, Any] = {name: value for name, value in options.items() if value is not None}
     if "lubricant" in typed and isinstance(known := keys.get("lubricant"), dict):
         typed["lubricant"] = known | typed["lubricant"]

@@ -44,7 +44,7 @@ def say_films(keys: LoadKeys, found: Any) -> list[dict[str, Any]] | None:
         "ring",
         "N",
         "middle, nm",
-        "sides, nm",
+        "least, nm",
         "rms for Λ = 3, nm",
         "damping, N s/m",
         "outside of the fit",

@@ -112,6 +112,14 @@ def stated(tree: DataTree, attribute: Attribute) -> Any:
     return (tree[attribute.group] if attribute.group else tree).attrs.get(attribute.name)
 
 
+def at_its_fastest(tree: DataTree) -> str:
+    """Of which speed of the contacts frequencies are, where it changes in a run."""
+    if not present(tree, rolling.TACHO):
+        return ""
+    speed = values(tree, rolling.TACHO)
+    return f", at the fastest, {rounded(float(speed.max()), 5)} m/s" if np.ptp(speed) else ""
+
+
 def number(tree: DataTree, attribute: Attribute) -> float | None:
     """Finite number in an attribute, or None."""
     try:

@@ -55,7 +55,8 @@ class Coverage:
         if len(self.covered):
             held = f", those from {' to '.join(map(nominal_frequency, self.covered[[0, -1]]))}"
         levels = f" ({self.columns})" * bool(self.columns)
-        return f"{self.name}{levels}, waves of {longest} to {shortest}: at {speed:.4g} m/s {share}{held}"
+        at = f"{speed:.4g} m/s" if slowest(speed) == speed else f"{slowest(speed):.4g} to {speed:.4g} m/s"
+        return f"{self.name}{levels}, waves of {longest} to {shortest}: at {at} {share}{held}"
 
 
 def coverages(case: Case, textures: Textures) -> Iterator[Coverage]:
@@ -128,7 +129,8 @@ def problems_of_coverage(case: Case, textures: Textures) -> Iterator[InputError]
         return
     first = found[0]
     speed = case.speed
-    usual = " to ".join(f"{rounded(1e3 * speed / first.bands[end])} mm" for end in (-1, 0))
+    ends = slowest(speed) / first.bands[-1], speed / first.bands[0]
+    usual = " to ".join(f"{rounded(1e3 * each)} mm" for each in ends)
     remedy = f"At this speed they are heard by waves of {usual}. Is the unit of the wavelengths right?"
     if not covered and first.waves[1] > MEASURED_WAVE:
         yield InputError(first.key, first.at(speed), "waves that are heard at the speed of the case", remedy)

@@ -9,10 +9,11 @@ from asperity.contact.hertz import Hertz
 from asperity.errors import OutOfRangeWarning
 from asperity.laws import spec_of
 from asperity.rolling.steps import warn_if_coarse
+from asperity.speeds import slowest
 from asperity.structures.body import GRAVITY
 from asperity.structures.track import Track
 from asperity.units import written
-from asperity.written_numbers import in_newtons, rounded
+from asperity.written_numbers import between, in_newtons, rounded
 
 HOLLOW = 0.01
 """Share of the mass of a solid ball of the same radius that nothing that rolls falls short of."""
@@ -61,10 +62,11 @@ def doubt_sizes(case: Case, over: object) -> None:
         told = f"{rounded(last - first)} m are rolled, which hold less than the rms of the texture"
         _warn("surface.longest", surface.longest, "m", told, "mm")
     if surface.corrugation is not None and (wave := surface.corrugation_wavelength) is not None:
-        passed = case.speed / wave
+        passed = [each / wave for each in (slowest(case.speed), float(case.speed))]
         highest = case.numerics.highest_frequency
-        if not LOWEST_HEARD <= passed <= 1.13 * highest:
-            told = f"it is passed at {rounded(passed)} Hz, and spectra go from some {LOWEST_HEARD:g} Hz to "
+        if not (passed[1] >= LOWEST_HEARD and passed[0] <= 1.13 * highest):
+            at = between(*map(rounded, passed))
+            told = f"it is passed at {at} Hz, and spectra go from some {LOWEST_HEARD:g} Hz to "
             _warn("surface.corrugation_wavelength", wave, "m", f"{told}{highest:g} Hz", "mm")
     if isinstance(over, Track) and (bent := over.static_deflection(load)) > SOFTEST_TRACK:
         told = f"tracks yield by a few millimetres at most. {UNIT} Look at pads, ballast and subgrade."

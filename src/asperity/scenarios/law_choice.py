@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
 from typing import Any
 
@@ -16,6 +16,7 @@ from asperity.reference.law_accuracy import HIGH, LOW, LawMap, MappedPoint, Plac
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.scene import PreparedCase
 from asperity.spectra import psd
+from asperity.speeds import at_fastest
 from asperity.structures.track import Track
 from asperity.surfaces.spectra import CORRELATION_THRESHOLD
 from asperity.surfaces.strip import Strip
@@ -170,6 +171,7 @@ class LawChoice:
     distance: float  # to the nearest point, in half decades
     nearest: MappedPoint
     reach: tuple[float, float]  # least and greatest k a of the highest band among the points of the bodies
+    at: str = ""  # of which speed it is, of one that changes
 
     @property
     def taken(self) -> str:
@@ -199,7 +201,7 @@ class LawChoice:
             f"{rounded(place.dynamic, 2)} of the load; k a of {HIGH / 1e3:g} kHz "
             f"{rounded(place.highest_wavenumber, 2)}, mapped from {rounded(self.reach[0], 2)} to "
             f"{rounded(self.reach[1], 2)}. Nearest point: {near.kind}, {in_newtons(near.load)}, "
-            f"{near.speed:g} m/s, {self.distance:.1f} half decades away{off}",
+            f"{near.speed:g} m/s, {self.distance:.1f} half decades away{off}{self.at}",
         )
 
     def entries(self) -> dict[str, Any]:
@@ -274,7 +276,9 @@ def law_choice(prepared: PreparedCase) -> LawChoice | None:
         return None
     kind = "wheel-on-rail" if isinstance(scene.over, Track) else "ball-on-beam"
     place = place_of(path, prepared.shape, case.speed, scene.square_transfer)
-    return None if place is None else choose(law_map(), kind, place, case.laws)
+    if place is None:
+        return None
+    return replace(choose(law_map(), kind, place, case.laws), at=at_fastest(case.speed))
 
 
 def choose(mapped: LawMap, kind: str, place: Place, laws: Sequence[str]) -> LawChoice:

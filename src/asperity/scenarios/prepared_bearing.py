@@ -22,7 +22,7 @@ from asperity.scenarios.raceway_films import films_on
 from asperity.scenarios.raceway_laws import OnRaceway
 from asperity.scenarios.raceway_limits import doubt_fault, doubt_surface
 from asperity.scenarios.roller_raceways import on_surface, surface_on
-from asperity.speeds import SpeedCourse, slowest
+from asperity.speeds import at_fastest, slowest
 from asperity.store import Store
 from asperity.structures.ball_bearing import PARTS
 from asperity.structures.bearing_statics import doubt_speed
@@ -189,7 +189,7 @@ def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], preparin
     touching, at_rest = (each.static.touching for each in (case, case.with_(centrifugal=False)))
     held = f"{rounded(touching.mean())} of {found.bearing.balls} on average, {touching.min():.0f} or more"
     alone = f", and {runs - len(case.laws)} by areal with parts alone" if textured else ""
-    fastest = " at the fastest" if isinstance(case.speed, SpeedCourse) else ""
+    fastest = at_fastest(case.speed, "1/min", 60.0)
     rows = [
         (
             f"heaviest load of a {found.bearing.ELEMENT}",
@@ -208,7 +208,9 @@ def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], preparin
         ("not in it", omitted_from(case)),
     ]
     if case.rotating:
-        rows.insert(1, ("load that turns", f"{in_newtons(case.rotating)}, once in {1e3 / case.speed:.4g} ms"))
+        rows.insert(
+            1, ("load that turns", f"{in_newtons(case.rotating)}, once in {1e3 / case.speed:.4g} ms{fastest}")
+        )
     return rows, preparing.Work({}, solutions, steps, None, taken, pace * compiling.time_to_compile())
 
 
@@ -227,7 +229,7 @@ def films_in_words(prepared: PreparedBearing) -> list[tuple[str, str]]:
         )
     ]
     rows += [
-        (f"film, {ring} ring, {in_newtons(each.load)}", each.in_words)
+        (f"film, {ring} ring, {in_newtons(each.load)}{at_fastest(case.speed, '1/min', 60.0)}", each.in_words)
         for ring, each in zip(RINGS, found, strict=True)
     ]
     outside = [f"{ring} ring: {', '.join(each.outside)}" for ring, each in zip(RINGS, found, strict=True)]

@@ -32,7 +32,7 @@ from asperity.scenes.observers import OF_BEARINGS
 from asperity.scenes.records import recorded_group
 from asperity.scenes.result import root_attributes, scenario_group
 from asperity.schema import Values, bearing, contact, tree
-from asperity.speeds import SpeedCourse, speed_at
+from asperity.speeds import at_fastest, speed_at
 from asperity.structures.ball_bearing import PARTS
 from asperity.written_numbers import rounded
 
@@ -125,7 +125,7 @@ def _verdict(case: BearingUnderLoad, heard: Values) -> str:
     )
     clear = heard[bearing.LINES_FOUND].values[0]
     lines = zip(PARTS, clear, heard[bearing.LINE_FREQUENCY].values[0], strict=True)
-    at_speed = f" at {rounded(60.0 * case.speed, 5)} 1/min" if isinstance(case.speed, SpeedCourse) else ""
+    at_speed = at_fastest(case.speed, "1/min", 60.0)
     parts = " and of the ".join(
         f"{names_in(of)[part]} ({rounded(at[0], 4)} Hz{at_speed})" for part, found, at in lines if found
     )

@@ -14,7 +14,7 @@ from asperity.scenes import schema
 from asperity.scenes.observer import Observer
 from asperity.schema import Values
 from asperity.spectra import level_of
-from asperity.speeds import reached
+from asperity.speeds import at_fastest, reached
 from asperity.written_numbers import rounded
 
 MOST_ORDERS = 60
@@ -38,11 +38,14 @@ class Orders:
         Turns per second.
     swing : float
         Highest less lowest point around it, m: its run-out.
+    at : str
+        Of which speed frequencies are, where it changes.
     """
 
     amplitude: Array
     revolution: float
     swing: float
+    at: str = ""
 
     @property
     def number(self) -> Array:
@@ -64,7 +67,7 @@ class Orders:
             for n in largest.tolist()
             if self.amplitude[n] > SMALL * self.amplitude.max()
         ]
-        return f"run-out {data.engineering(self.swing, 'm')}; amplitudes: {', '.join(told)}"
+        return f"run-out {data.engineering(self.swing, 'm')}; amplitudes: {', '.join(told)}{self.at}"
 
 
 def orders_of(prepared: PreparedCase) -> Orders | None:
@@ -79,7 +82,8 @@ def orders_of(prepared: PreparedCase) -> Orders | None:
     turn = around[:rows]
     count = min(MOST_ORDERS, (rows - 1) // 2)
     amplitude = 2.0 / rows * np.abs(np.fft.rfft(turn))[1 : count + 1]
-    return Orders(amplitude, case.speed / case.rolling.circumference, float(np.ptp(turn)))
+    revolution = case.speed / case.rolling.circumference
+    return Orders(amplitude, revolution, float(np.ptp(turn)), at_fastest(case.speed))
 
 
 def points_of_a_turn(case: Any) -> int:

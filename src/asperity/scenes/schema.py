@@ -37,13 +37,16 @@ BODY_DISPLACEMENT = _rolling(
 )
 _BODIES = "PSD of the acceleration of the bodies in their degrees of freedom, one-sided"
 BODY_ACCELERATION_PSD = _spectra("body_acceleration_psd(law, degree, frequency)", "(m/s2)2/Hz", _BODIES)
-_PASSING = "frequency at which contacts at equal distances pass a place, and its multiples"
+_AT_FASTEST = "; of a speed that changes at the fastest"
+_PASSING = f"frequency at which contacts at equal distances pass a place, and its multiples{_AT_FASTEST}"
 PASSING_FREQUENCY = _spectra("passing_frequency", "Hz", _PASSING, "contacts at equal distances")
 
 _AROUND = "where a line around what rolls was measured, of a turn or more"
 _round = partial(_spectra, condition=_AROUND)
 ORDER = _round("order", "1", "order of what is out of round: waves around what rolls")
-ORDER_FREQUENCY = _round("order_frequency(order)", "Hz", "frequency at which they pass the contact")
+ORDER_FREQUENCY = _round(
+    "order_frequency(order)", "Hz", f"frequency at which they pass the contact{_AT_FASTEST}"
+)
 ORDER_LEVEL = _round(
     "order_level(order)",
     "dB re 1 um",

@@ -69,7 +69,7 @@ function told(milliseconds) {
   find("contact-words").textContent = `solved and drawn in ${Math.round(milliseconds)} ms${unsure}${edge}`;
   const of = [["approach δ", engineering(state.approach, "m")], ["state r", engineering(state.state, "m")], ["force F", engineering(state.force, "N")],
     ["k_c = F/r", engineering(state.stiffness, "N/m")], ["dF/dδ", engineering(state.tangent_stiffness, "N/m")],
-    ["waves of its length (v/2a)", engineering(contact.sample.passing, "Hz")],
+    [`waves of its length (v/2a)${contact.sample.passing_at}`, engineering(contact.sample.passing, "Hz")],
     ["largest pressure", engineering(state.largest_pressure, "Pa")], ["area in contact", squareMicrometres(state.area)], ["smooth bodies (Hertz)", engineering(state.smooth_force, "N")]];
   find("contact-numbers").replaceChildren(...of.map(([what, value]) => make("div", {}, make("dt", { textContent: what }), make("dd", { textContent: value }))));
   find("approach").setAttribute("aria-valuetext", `${of[0][1]}, ${of[2][1]}, k_c ${of[3][1]}`);

@@ -21,6 +21,7 @@ from asperity.scenarios.preparing import prepare
 from asperity.scenarios.roller_raceways import on_cells
 from asperity.scenarios.scene import PreparedCase
 from asperity.scenarios.textures import strip_rows
+from asperity.speeds import at_fastest
 from asperity.written_numbers import rounded
 
 MOST_CELLS_SHOWN = 129
@@ -28,7 +29,18 @@ MOST_CELLS_SHOWN = 129
 CURVE = 16
 """States of the curve of k_c."""
 RTOL = 1e-5
-DESCRIBED = ("spacing", "thinning", "heights", "source", "load", "passing", "touch", "deepest", "working")
+DESCRIBED = (
+    "spacing",
+    "thinning",
+    "heights",
+    "source",
+    "load",
+    "passing",
+    "passing_at",
+    "touch",
+    "deepest",
+    "working",
+)
 """What is told of a sample that does not change while it is pressed."""
 SPARE = 4.0
 """Length of the path beyond a strip for the filters, in windows: one sample needs no longer one."""
@@ -43,6 +55,7 @@ class PressedSurface:
     speed: float  # of the contact along them, m/s
     hardness: float | None  # Pa
     source: str  # where the heights come from
+    at: str = ""  # of which speed it is, of one that changes
 
 
 class PressedSample:
@@ -59,6 +72,7 @@ class PressedSample:
         self.spacing = tuple(self.thinning * d for d in shape.spacing)
         self.load, self.hertz = shape.load, shape.hertz
         self.passing = pressed.speed / (2.0 * shape.semi_axes[0])  # Hz, of waves as long as the contact
+        self.passing_at = pressed.at
         self.half_space = HalfSpace(
             (gap.shape[0], gap.shape[1]), (self.spacing[0], self.spacing[1]), shape.modulus,
             pressed.hardness,
@@ -155,7 +169,8 @@ def scene_surface(case: Case) -> PressedSurface:
         weights = punch_weights(shape.spacing, shape.semi_axes)
         heights = patches([m.heights for m in maps], cells, prepared.case.contact.samples, weights)[0]
         source = prepared.textures.origin
-    return PressedSurface(shape, heights, case.speed, case.contact.hardness, source)
+    at = at_fastest(case.speed)
+    return PressedSurface(shape, heights, case.speed, case.contact.hardness, source, at)
 
 
 def raceway_surface(case: BearingUnderLoad) -> PressedSurface:
@@ -169,7 +184,8 @@ def raceway_surface(case: BearingUnderLoad) -> PressedSurface:
     where = "over the middle of what is damaged" if damaged.size else "where it begins"
     element = case.bearing.bearing.ELEMENT
     source = f"the most loaded {element} on the outer raceway, {where}; long waves lift it as a whole"
-    return PressedSurface(on.shape, heights, passing, on.hardness, source)
+    at = at_fastest(case.speed, "1/min", 60.0)
+    return PressedSurface(on.shape, heights, passing, on.hardness, source, at)
 
 
 def _thinned(pressed: PressedSurface) -> tuple[Array, Array, int]:

@@ -261,10 +261,10 @@ def films_table(tree: DataTree) -> ReportTable | None:
     pressure = 1e9 * (data.number(tree, bearing.OIL_PRESSURE) or 0.0)
     formula = data.stated(tree, bearing.FILM_FORMULA) or "Hamrock and Dowson"
     note = (
-        f"Under the heaviest static load. Its oil has {rounded(viscosity)} mPa s and {rounded(pressure)} "
-        f"1/GPa at its temperature; contacts are full of it. Film by {formula}, less what the heat of the "
-        "inlet takes (Wilson and Sheu); Λ is the least film over the rms of both surfaces within the "
-        "contact: 3 or more a full film, less than 1 boundary lubrication."
+        f"Under the heaviest static load{_at_fastest(tree)}. Its oil has {rounded(viscosity)} mPa s and "
+        f"{rounded(pressure)} 1/GPa at its temperature; contacts are full of it. Film by {formula}, less "
+        "what the heat of the inlet takes (Wilson and Sheu); Λ is the least film over the rms of both "
+        "surfaces within the contact: 3 or more a full film, less than 1 boundary lubrication."
     )
     return table("films", "Films of oil", columns, note)
 
@@ -494,9 +494,10 @@ def ball_sliding_table(tree: DataTree) -> ReportTable | None:
             columns[f"{ring}, {words}"] = number_cells(data.values(tree, entry)[row, 0] / size, in_digits(3))
     every = np.nansum(data.values(tree, bearing.SLIDING_HEAT), axis=(0, 2)).mean()
     note = (
-        "Under the static load, the first ball below it. Spin against a raceway is that of the ring alone "
-        "which does not control the axis of the ball. By the form of its groove a ball slides across the "
-        "contact: at the rim, over the speed of rolling. The heat is that over the coefficient of friction "
+        f"Under the static load{_at_fastest(tree)}, the first ball below it. Spin against a raceway is that "
+        "of the ring alone which does not control the axis of the ball. By the form of its groove a ball "
+        "slides across the contact: at the rim, over the speed of rolling. The heat is that over the "
+        "coefficient of friction "
         f"if all of the contact slips, the most there is: {rounded(every)} W for all contacts together. "
         "Balls that do not touch both rings are left out."
     )

@@ -73,7 +73,7 @@ def _passing_tones(tree: DataTree) -> tuple[list[Mark], str]:
     tones = data.values(tree, schema.PASSING_FREQUENCY)
     rules = chart.Rules(tones[(tones > low) & (tones < high)][:10], dashes=(1, 2), width=0.6)
     first = f"{rounded(float(tones[0]), 4)} Hz at which contacts pass a place"
-    return [rules], f"Dotted: k v/L, multiples of the {first}; ten are drawn."
+    return [rules], f"Dotted: k v/L, multiples of the {first}{data.at_its_fastest(tree)}; ten are drawn."
 
 
 def energy_table(tree: DataTree) -> ReportTable:

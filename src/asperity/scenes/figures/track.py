@@ -302,7 +302,8 @@ def out_of_round(tree: DataTree, lines: Lines) -> Drawn:
     (frequency,) = (series.values for series in lines.of(schema.ORDER_FREQUENCY))
     order = lines.at
     axis = panels.levels_axis("level of the rms height / dB re 1 µm", [level], span=SPAN)
-    second = chart.Second("frequency / Hz", scale=float(frequency[0] / order[0]))
+    at = data.at_its_fastest(tree)
+    second = chart.Second(f"frequency{at} / Hz", scale=float(frequency[0] / order[0]))
     along = chart.Axis("order: waves around", 0.0, float(order[-1]) + 1.0, second=second)
     base = np.full(len(level), axis.low if axis.low is not None else float(np.nanmin(level)))
     half = np.full(len(level), 0.35)
@@ -317,7 +318,8 @@ def out_of_round(tree: DataTree, lines: Lines) -> Drawn:
         if level[n] > np.nanmax(level) - SPAN
     )
     swing = "" if run_out is None else f"Run-out {data.engineering(run_out, 'm')}. "
-    yield f"{swing}The largest orders, by their amplitude: {told}; an order n passes n times in each turn."
+    yield f"{swing}The largest orders, by their amplitude: {told}{at}."
+    yield "An order n passes n times in each turn."
 
 
 def _heard(wavelength: Numbers, speed: float) -> str:
