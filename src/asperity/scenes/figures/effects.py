@@ -56,9 +56,21 @@ class Effects:
     def best(self) -> str:
         """What helps most; empty where nothing surely helps."""
         helps = self.effect[0, 0] < -np.nan_to_num(self.error[0, 0])
-        how = f"{data.signed(self.effect[0, 0])} {'dB(A)' if 'dB(A)' in self.units else 'dB'}"
+        how = (
+            f"{data.signed(self.effect[0, 0])} {'dB(A)' if 'dB(A)' in self.units else 'dB'}{self._as_much()}"
+        )
         words = f"Helps most: {self.variants[0]}, {how}. {self.in_words[self.variants[0]]} {self.silent}"
         return words.rstrip() if helps else ""
+
+    def _as_much(self) -> str:
+        """Variants that help no less than the best one but by chance; empty where it is alone."""
+        (effect, *others), (error, *of_others) = self.effect[:, 0], self.error[:, 0]
+        told = [
+            f"{name}, {data.signed(other)}"
+            for name, other, own in zip(self.variants[1:], others, of_others, strict=True)
+            if other < -own and other - effect <= np.hypot(error, own)
+        ]
+        return f"; as much but for chance: {'; '.join(told)}" if told else ""
 
     def _words(self, effect: Numbers, error: Numbers) -> str:
         own = np.array([part != WHOLE for part in self.parts])
@@ -92,7 +104,8 @@ def said_once(reasons: str) -> str:
 
 def effects_table(of: Effects) -> tables.ReportTable:
     """What each variant does, the quietest first, in numbers and in words."""
-    columns = {"change": tables.text_cells(["as it is", *of.variants], "name")}
+    base = f"as it is, mean of {of.seeds} seeds" if of.seeds > 1 else "as it is"
+    columns = {"change": tables.text_cells([base, *of.variants], "name")}
     for p, part in enumerate(of.parts):
         cells = [_cell(*pair) for pair in zip(of.effect[:, p], of.error[:, p], strict=True)]
         columns[part or "level"] = [tables.Cell(f"{of.level[p]:.1f}", "number"), *cells]
