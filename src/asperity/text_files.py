@@ -19,6 +19,15 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _MARKS = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
+_NO_TEXT = {
+    b"PK\x03\x04": "a zip archive, as workbooks of Excel are",
+    b"\xd0\xcf\x11\xe0": "a document of Office, as old workbooks of Excel are",
+    b"%PDF": "a PDF",
+    b"\x1f\x8b": "a compressed file, gzip",
+    b"\x89PNG": "a picture, PNG",
+    b"\xff\xd8\xff": "a picture, JPEG",
+}
+"""What people take for tables, by its first bytes."""
 _FORMULA = ("=", "+", "-", "@")
 """First characters of what spreadsheets take for a formula, and would compute or even run."""
 
@@ -80,6 +89,9 @@ def decoded(content: bytes, source: str, allowed: str, *, latin: bool = False) -
     message.
     """
     remedy = "Save the file as UTF-8."
+    for begins, received in _NO_TEXT.items():
+        if content.startswith(begins):
+            raise InputError(source, received, allowed, "Export it as text, as CSV.")
     try:
         if content.startswith(_MARKS):
             return content.decode("utf-16")

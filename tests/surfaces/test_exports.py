@@ -5,6 +5,7 @@ import pytest
 from surface_files import x3p, x3p_xml, zipped
 
 from asperity import HeightMap, read_surface
+from asperity.case.tables import read_levels
 from asperity.errors import InputError, MissingPointsWarning, OutOfRangeWarning
 
 X = 0.25 * np.arange(40)  # um
@@ -271,3 +272,46 @@ def test_what_files_are_filled_with_is_doubted_near_others(read, mark):
     lines[5] = f"1.25;{mark}"
     with pytest.warns(OutOfRangeWarning, match="If it marks what is missing, write NaN there"):
         read("x (um);z (nm)\n" + "\n".join(lines))
+
+
+HEIGHTS_OF_LINE = "x [µm];z [µm]\n" + "".join(f"{0.25 * n};{np.sin(0.25 * n):.6f}\n" for n in range(40))
+
+
+@pytest.mark.parametrize("ending", ["mat", "nc", "x3p", "npy", "sdf", "npz"])
+def test_text_is_text_whatever_the_name_of_its_file(tmp_path, ending):
+    file = tmp_path / f"a.{ending}"
+    file.write_text(HEIGHTS_OF_LINE, encoding="utf-8")
+    line = read_surface(file)
+    assert (line.shape, line.spacing) == ((40,), pytest.approx(0.25e-6))
+
+
+@pytest.mark.parametrize("ending", ["mat", "nc", "x3p", "npz", "sdf", "txt", "prw"])
+def test_an_array_is_one_whatever_the_name_of_its_file(tmp_path, ending):
+    heights = 1e-7 * np.random.default_rng(3).normal(size=(12, 10))
+    np.save(tmp_path / "a.npy", heights)
+    (tmp_path / "a.npy").rename(tmp_path / f"b.{ending}")
+    found = read_surface(tmp_path / f"b.{ending}", pixel="1 um", height_unit="m")
+    np.testing.assert_array_equal(found.heights, heights)
+
+
+@pytest.mark.parametrize(("begins", "told"), [
+    (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", "a document of Office, as old workbooks of Excel are"),
+    (b"%PDF-1.7\n1 0 obj\n", "a PDF"),
+    (b"\x1f\x8b\x08\x00", "a compressed file, gzip"),
+    (b"\x89PNG\r\n\x1a\n", "a picture, PNG"),
+    (b"\xff\xd8\xff\xe0\x00\x10JFIF", "a picture, JPEG"),
+])  # fmt: skip
+def test_what_is_no_table_is_told_by_what_it_is(tmp_path, begins, told):
+    (tmp_path / "a.csv").write_bytes(begins + bytes(100))
+    with pytest.raises(InputError, match=rf"received {told}; allowed: heights as text\. Export it as text"):
+        read_surface(tmp_path / "a.csv")
+    with pytest.raises(InputError, match=f"received {told}; allowed: .*Export it as text, as CSV"):
+        read_levels(tmp_path / "a.csv")
+
+
+def test_a_workbook_is_no_table(tmp_path):
+    (tmp_path / "a.csv").write_bytes(zipped(("xl/workbook.xml", b"<workbook/>")))
+    with pytest.raises(
+        InputError, match="a zip archive, as workbooks of Excel are; allowed: heights as text"
+    ):
+        read_surface(tmp_path / "a.csv")

@@ -190,13 +190,16 @@ def _read(path: str | Path, hints: Hints) -> list[guards.Surface]:
 def _own(file: Path, head: bytes, extension: str) -> tuple[str, Reader]:
     """What a file that begins so is called, and what reads it, of the formats that this program knows."""
     content = _by_content(file, head)
+    if content:
+        return OWN[content]
     if extension in OWN:
-        received = f"a file that starts with {head[:8]!r}"
-        allowed = f"a {OWN[extension][0]} file"
+        named, reader = OWN[extension]
         remedy = "Export it again, or correct the extension."
-        require(content == extension, file.name, received, allowed, remedy)
+        is_text = reader is not simpack.read and text.is_numeric(file)
+        require(is_text, file.name, f"a file that starts with {head[:8]!r}", f"a {named} file", remedy)
+        return TEXT
     as_text = extension in READ_AS_TEXT and (extension not in MAY_BE_BINARY or text.holds_text(file))
-    return OWN[content] if content else TEXT if as_text else OTHER
+    return TEXT if as_text else OTHER
 
 
 def _read_by(reader: Reader, file: Path, hints: Hints) -> list[guards.Surface]:
