@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from asperity import WheelOnRail
+from asperity import Profile, WheelOnRail
 from asperity.case.tables import read_levels
 from asperity.errors import InputError, OutOfRangeWarning, PhysicsWarning
 from asperity.reference.cnossos import rail_roughness
-from asperity.scenarios.coverage import coverages, doubt_levels
+from asperity.scenarios.coverage import Coverage, coverages, doubt_levels
 from asperity.scenarios.preparing import prepare
 
 LAWS = ["linear-filtered"]
@@ -71,16 +71,18 @@ def test_a_rough_wheel_makes_up_for_a_rail_of_few_bands():
     ]  # fmt: skip
 
 
+@pytest.mark.parametrize(("longest", "count"), [(-0.5, 10), (0.3, 35), (0.3, 28)])
 @pytest.mark.parametrize(("scale", "unit"), [(100, "cm"), (1000, "mm"), (1e6, "um")])
-def test_wavelengths_under_a_wrong_unit(scale, unit, tmp_path):
-    rows = "".join(f"{wave * scale:.6g}, {level}\n" for wave, level in table(-0.5, 10))
+def test_wavelengths_under_a_wrong_unit(longest, count, scale, unit, tmp_path):
+    """Of 0.32 m to 40 mm, and of the limit spectrum, 2 m to 0.8 or 4 mm."""
+    rows = "".join(f"{wave * scale:.6g}, {level}\n" for wave, level in table(longest, count))
     (tmp_path / "a.csv").write_text(f"wavelength (m), level (dB)\n{rows}")
     with pytest.raises(
         InputError, match=rf"up to 10 m. Are they in {unit}\? Then write 'wavelength \({unit}\)'"
     ):
         read_levels(tmp_path / "a.csv")
     (tmp_path / "a.csv").write_text(f"wavelength ({unit}), level (dB)\n{rows}")
-    np.testing.assert_allclose(read_levels(tmp_path / "a.csv")[0][0], 10.0**-0.5, rtol=1e-5)
+    np.testing.assert_allclose(read_levels(tmp_path / "a.csv")[0][0], 10.0**longest, rtol=1e-5)
 
 
 def test_waves_that_are_all_shorter_than_cells_are_told_with_their_unit(tmp_path):
@@ -152,3 +154,23 @@ def test_no_measured_rail_is_doubted_and_most_with_wavelengths_ten_times_as_long
     assert not any(doubts_of(tmp_path / "a.csv", wavelength, level) for level in some)
     longer = [bool(doubts_of(tmp_path / "a.csv", 10.0 * wavelength, level)) for level in some]
     assert np.mean(longer) > 0.5
+
+
+@pytest.mark.parametrize(("step", "told"), [(1e-6, "0 of 18"), (0.7, "0 of 18"), (1e-3, "")])
+def test_a_measured_line_over_a_track_without_a_wave_that_is_heard_is_doubted_or_refused(step, told):
+    """4000 points: 4 mm in all, or 0.7 m apart, at 30 m/s; of a rail no word."""
+    line = Profile(1e-3 * step * np.cumsum(np.random.default_rng(4).normal(size=4000)), step)
+    keys = {"laws": LAWS, "duration": 0.05, "settling": 0.05, "speed": 30.0}
+    try:
+        rolled = WheelOnRail(surface={"line": line, "continuation": "repeat"}, **keys)
+        said = [str(each.message) for each in prepare(rolled, "case").caught]
+    except InputError as refused:
+        said = [str(refused)]
+    (doubt,) = [each for each in said if "one-third octaves from" in each] or [""]
+    assert told in doubt
+    assert doubt.startswith("surface.line: ") == bool(told)
+
+
+def test_a_single_band_is_told_as_one():
+    bands = np.array([100.0, 125.0])
+    assert Coverage("a", "b", (1.0, 0.1), bands, bands[:1]).at(10.0).endswith("125 Hz, that of 100 Hz")

@@ -13,7 +13,7 @@ from asperity.errors import InputError, OutOfRangeWarning
 from asperity.reference.cnossos import rail_roughness
 from asperity.scenarios.records import measured_maps
 from asperity.surfaces.bands import from_bands
-from asperity.surfaces.readers import belief
+from asperity.surfaces.readers import belief, read_across
 from asperity.surfaces.readers.belief import ROUGHEST, SLOPES, USUAL_SLOPES, judge_sizes, typical_slope
 from asperity.surfaces.readers.hints import Hints
 
@@ -44,6 +44,21 @@ def read(tmp_path):
 def test_units_that_are_wrong_by_thousands(read, kind, height_unit, pixel, message):
     with pytest.raises(InputError, match=message):
         read(height_unit, pixel, kind)
+
+
+@pytest.mark.filterwarnings("error::asperity.errors.OutOfRangeWarning")
+@pytest.mark.parametrize(("x_unit", "z_unit", "message"), [
+    ("um", "mm", r"Were heights 1.84 µm\? Then their unit is a thousandth of the one .*give height_unit"),
+    ("um", "m", r"Were heights 1.84 µm\? Then their unit is a millionth of the one that is taken"),
+    ("mm", "nm", r'Are points 2 µm apart\? Give pixel="2 um", .* heights 1.84 µm\? .* a thousand times the'),
+])  # fmt: skip
+def test_a_unit_that_a_file_states_is_not_advised_again(tmp_path, x_unit, z_unit, message):
+    """Heights of 1.84 at places 2 apart, each in its unit; rails have slopes of 1e-4, and are no mirrors."""
+    heights = 0.2 * np.cumsum(ROUGH.ravel() - ROUGH.mean())
+    rows = "".join(f"{2 * n};{z:.6f}\n" for n, z in enumerate(heights))
+    (tmp_path / "a.csv").write_text(f"x [{x_unit}];z [{z_unit}]\n{rows}")
+    with pytest.raises((InputError, OutOfRangeWarning), match=message):
+        read_surface(tmp_path / "a.csv")
 
 
 @pytest.mark.parametrize(("height_unit", "pixel", "message"), [
@@ -158,3 +173,17 @@ def test_numbers_that_files_are_filled_with_are_known_in_any_unit(unit):
         belief._is_mark(unit * mark) for mark in (-999.0, -9999.0, 9999.0, -99999.0, -32768.0, 32767.0)
     )
     assert not any(belief._is_mark(unit * height) for height in (-998.0, 1000.0, 327.0, 0.0))
+
+
+@pytest.mark.filterwarnings("error::asperity.errors.OutOfRangeWarning")
+@pytest.mark.parametrize("steepest", [1.0, 3.0, 20.0])
+def test_a_cylindrical_tread_with_a_steep_flange_is_believed(tmp_path, steepest):
+    """Most of its points are level, and neighbours that are not are those of the flange alone."""
+    y = np.arange(-60.0, 60.0, 0.25)
+    z = np.clip(steepest * (-40.0 - y), 0.0, 28.0)
+    rows = "".join(f"{a:.2f};{b:.4f}\n" for a, b in zip(y, z, strict=True))
+    (tmp_path / "a.csv").write_text(f"y (mm);z (mm)\n{rows}")
+    assert read_across(tmp_path / "a.csv").heights.max() == pytest.approx(1e-3 * min(28.0, 20.0 * steepest))
+    (tmp_path / "a.csv").write_text(f"y (um);z (m)\n{rows}")
+    with pytest.raises(InputError, match="slopes of"):
+        read_across(tmp_path / "a.csv")

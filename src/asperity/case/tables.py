@@ -31,6 +31,7 @@ from asperity.parameters import FROM_PYTHON, File, Key, Origin, Problems, Quanti
 from asperity.spectra import energy_sum
 from asperity.structures import support, track_parameters
 from asperity.structures.outline import checked_outline
+from asperity.surfaces.bands import likely_band
 from asperity.text_files import lines_in, lines_of_cells, number_in, read_text
 from asperity.units import unit_in_brackets
 from asperity.written_numbers import count_of, rounded
@@ -39,7 +40,7 @@ LARGEST_TABLE = 32 * 2**20  # bytes
 LARGEST_LEVEL = 60.0  # dB re 1 um, either side: 1 nm to 1 mm in one band
 LONGEST_WAVE, MEASURED_WAVE = 10.0, 1.0
 """m: roughness is measured up to 1 m, long corrugation up to 3 m; what is longer is track geometry."""
-_SMALLER = {"cm": 1e-2, "mm": 1e-3, "um": 1e-6, "nm": 0.0}
+_SMALLER = {"cm": 1e-2, "mm": 1e-3, "um": 1e-6, "nm": 1e-9}
 FEWEST_LINES = 10  # of a receptance
 _BAND = 0.1  # of a decade
 DECIMALS = 14
@@ -120,7 +121,7 @@ def read_levels(table: TableSource) -> tuple[Array, Array]:
         )
     if wavelength[0] > LONGEST_WAVE:
         received = f"wavelengths of {wavelength[-1]:.4g} m to {wavelength[0]:.4g} m"
-        unit = next(unit for unit, metres in _SMALLER.items() if wavelength[0] * metres <= MEASURED_WAVE)
+        unit = max(_SMALLER, key=lambda unit: int(likely_band(wavelength * _SMALLER[unit]).sum()))
         remedy = f"Are they in {unit}? Then write 'wavelength ({unit})' above them."
         raise InputError(name_of(table), received, f"waves of roughness, up to {LONGEST_WAVE:g} m", remedy)
     for longer, shorter in pairwise(wavelength):

@@ -9,6 +9,7 @@ import numpy as np
 
 from asperity.arguments import Array
 from asperity.case.form import name_of
+from asperity.case.rolled_over import TrackKeys
 from asperity.case.scene import Case
 from asperity.case.tables import MEASURED_WAVE, columns_of_levels
 from asperity.errors import InputError, OutOfRangeWarning
@@ -53,7 +54,8 @@ class Coverage:
         share += " to ".join(map(nominal_frequency, self.bands[[0, -1]]))
         held = ""
         if len(self.covered):
-            held = f", those from {' to '.join(map(nominal_frequency, self.covered[[0, -1]]))}"
+            ends = list(dict.fromkeys(map(nominal_frequency, self.covered[[0, -1]])))
+            held = f", {'those from' if len(ends) > 1 else 'that of'} {' to '.join(ends)}"
         levels = f" ({self.columns})" * bool(self.columns)
         at = f"{speed:.4g} m/s" if slowest(speed) == speed else f"{slowest(speed):.4g} to {speed:.4g} m/s"
         return f"{self.name}{levels}, waves of {longest} to {shortest}: at {at} {share}{held}"
@@ -117,10 +119,11 @@ def doubt_levels(case: Case) -> None:
 def problems_of_coverage(case: Case, textures: Textures) -> Iterator[InputError]:
     """Errors about spectra without a wave in any band that counts, as no roughness is measured.
 
-    Those with waves in few of them are doubted.
+    Those with waves in few of them are doubted, and lines over a track.
     """
     surface = case.surface
-    others = (surface.file, surface.line, surface.corrugation, case.rolling.line)
+    lines = () if isinstance(case.rolled_over, TrackKeys) else (surface.line, case.rolling.line)
+    others = (surface.file, surface.corrugation, *lines)
     if case.has_defect or any(other is not None for other in others):
         return
     found = list(coverages(case, textures))

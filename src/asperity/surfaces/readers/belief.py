@@ -51,6 +51,11 @@ FEWEST_POINTS = 30
 _NORMAL = 1.4826
 """Standard deviation over the median size of normally distributed numbers."""
 _UNITS = {1.0: "m", 1e-3: "mm", 1e-6: "um", 1e-9: "nm"}
+_TIMES = {1e-9: "billion times", 1e-6: "million times", 1e-3: "thousand times",
+          1e3: "thousandth of", 1e6: "millionth of", 1e9: "billionth of"}  # fmt: skip
+"""What is said of a unit that is so many times smaller than another."""
+LEAST_LIKELY = 1e-4
+"""Slope from which on units that were exchanged are likely: that of smooth rails."""
 
 
 def typical_slope(surface: HeightMap | Profile) -> float | None:
@@ -77,14 +82,22 @@ def _slope_along(heights: Array, spacing: float) -> float:
     return _NORMAL * float(np.median(steps)) / spacing if steps.size else 0.0
 
 
+def _over_its_width(section: HeightMap | Profile) -> float | None:
+    """Height of a section of a body over its width: a cylinder is level, and the flange beside it steep."""
+    sample = _sample(section.heights)
+    return float(np.ptp(sample)) / float(np.max(section.size)) or None if sample.size else None
+
+
 def judge_sizes(surface: HeightMap | Profile, hints: Hints) -> None:
     """Refuse a surface whose sizes are beyond belief, with the likely cause, and warn of unusual ones."""
     what = surface.source or "surface"
     spacing = float(np.max(surface.spacing))
     if surface.heights.size >= FEWEST_POINTS and (told := _far_from_others(surface.heights)):
         OutOfRangeWarning.warn(f"{what}: {told}")
-    slope = typical_slope(surface) if surface.heights.size >= FEWEST_POINTS else None
-    places = _of_places(spacing, _thousands((slope or 0.0) / USUAL))
+    slope = None
+    if surface.heights.size >= FEWEST_POINTS:
+        slope = _over_its_width(surface) if hints.section else typical_slope(surface)
+    places = _of_places(spacing, _thousands(slope or 0.0))
     if not SPACINGS[0] <= float(np.min(surface.spacing)) <= spacing <= SPACINGS[1]:
         allowed = f"distances of {SPACINGS[0] * 1e9:g} nm to {SPACINGS[1]:g} m"
         raise InputError(what, f"points {told_length(spacing)} apart", allowed, places)
@@ -98,7 +111,9 @@ def judge_sizes(surface: HeightMap | Profile, hints: Hints) -> None:
         return
     found = f"heights of {told_length(_rms(surface))} over {_extent(surface)}: slopes of {rounded(slope, 2)}"
     steep = slope > USUAL_SLOPES[1]
-    remedy = _of_heights(surface, _thousands(slope / USUAL), hints) if steep else places
+    factor = _thousands(slope)
+    heights = _of_heights(surface, factor if steep else 1.0 / factor, hints)
+    remedy = heights if steep else f"{places} {heights}"
     if not SLOPES[0] <= slope <= SLOPES[1]:
         allowed = f"slopes of {rounded(SLOPES[0])} to {rounded(SLOPES[1])} from point to point"
         raise InputError(what, found, allowed, remedy)
@@ -220,18 +235,28 @@ def _is_mark(height: float) -> bool:
     return f"{abs(height):.5e}".partition("e")[0] in MARKS
 
 
-def _thousands(ratio: float) -> float:
-    """Ratio of units nearest to a ratio of lengths, or to its reciprocal: 1e3, 1e6 or 1e9."""
-    size = abs(math.log10(ratio)) if ratio else 6.0
-    return 1e3 ** float(np.clip(round(size / 3.0), 1, 3))
+def _thousands(slope: float) -> float:
+    """Ratio of units, 1e3, 1e6 or 1e9, by which a slope comes to usual ones: near `USUAL` from above."""
+    if not slope:
+        return 1e6
+    steps = (
+        round(math.log10(slope / USUAL) / 3.0) if slope > USUAL else math.log10(LEAST_LIKELY / slope) / 3.0
+    )
+    return float(1e3 ** int(np.clip(math.ceil(steps), 1, 3)))
 
 
 def _of_heights(surface: HeightMap | Profile, factor: float, hints: Hints) -> str:
-    given = hints.height_unit or 1.0
-    while factor > 1e3 and given / factor < 0.9 * min(_UNITS):
+    """Ask whether heights were smaller by a factor; of a unit that a file states its name is not known."""
+    given = hints.height_unit
+    while given and factor > 1e3 and given / factor < 0.9 * min(_UNITS):
         factor /= 1e3
     usual = told_length(_rms(surface) / factor)
-    unit = _UNITS.get(float(f"{given / factor:.3g}"), "um")
+    unit = _UNITS.get(float(f"{given / factor:.3g}")) if given else None
+    if unit is None:
+        return (
+            f"Were heights {usual}? Then their unit is a {_TIMES[factor]} the one that is taken: correct it "
+            f"in the file, or give {spell('height_unit')}."
+        )
     lead = f"Were they in {unit.replace('u', 'µ')}, {usual}? Give"
     return advice("height_unit", unit, lead, f"Were they {usual}? Correct their unit.")
 
