@@ -3,6 +3,7 @@
 import csv
 import importlib
 import json
+import math
 import re
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -14,6 +15,7 @@ from scipy.io import wavfile
 import asperity
 from asperity.case.ball_bearing import BearingUnderLoad
 from asperity.case.cases import as_case
+from asperity.case.loaded_bearing import read_bearing
 from asperity.studies import running
 from command_line import call, words_of
 from faulty_signals import faulty_signal
@@ -85,6 +87,23 @@ def test_loads_tones_and_waviness(drawn):
         mark.text.strip() for mark in chart.panels[0].marks if hasattr(mark, "text")
     ]  # its scale
     assert f"Picture: {Path('a.png').resolve()}" in said
+
+
+@pytest.mark.parametrize("name", ["6205", "NU205"])
+def test_tones_ask_for_no_load(name):
+    """Z/2 (1 ∓ D/d cos α) of the turning ring, at the free contact angle; pictures are of loads."""
+    words = ("bearing", name, "--speed", "1800 1/min")
+    found = json.loads(call(*words, "--json").stdout)
+    assert found["balls"] is None
+    of = read_bearing(name, {}).bearing
+    ratio = of.ball_diameter / of.pitch_diameter * math.cos(of.free_angle)
+    assert found["tones"]["outer"] == pytest.approx(15.0 * of.balls * (1.0 - ratio))
+    assert found["tones"]["inner"] == pytest.approx(15.0 * of.balls * (1.0 + ratio))
+    said = " ".join(call(*words).stdout.split())
+    assert "A load, as --radial '1 kN', gives loads, pressures and stiffness." in said
+    assert ("at the free contact angle" in said) == (of.free_angle > 0.0)
+    assert "per turn" in call("bearing", name).stdout
+    assert "load: received none" in call(*words, "-o", "zone.svg", code=2).stderr
 
 
 def test_a_bearing_of_ones_own_and_options_that_are_stronger():

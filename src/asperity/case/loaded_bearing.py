@@ -46,6 +46,12 @@ class LoadKeys(Section):
         def bearing(self) -> Any:
             """The bearing."""
 
+    @property
+    def is_loaded(self) -> bool:
+        """Whether a load, a preload or an interference presses what rolls."""
+        carried = self.radial + self.axial + self.bearing.preload
+        return carried > 0.0 or self.bearing.radial_clearance < 0.0
+
 
 class BearingKeys(LoadKeys, BearingGeometry):
     """A ball bearing and what it carries."""

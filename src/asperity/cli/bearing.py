@@ -167,6 +167,8 @@ def _carried(keys: LoadKeys, picture: Path | None) -> dict[str, Any]:
             "speed", "none of a bearing with oil", "that at which its films are, as '1800 1/min'"
         )
     doubt_speed(keys.bearing, speed)
+    if not (keys.is_loaded or keys.lubricant.found or picture):
+        return _rolling(keys.bearing, speed)
     found = keys.bearing.loaded(keys.radial, keys.axial, speed=speed)
     load = f"{rounded(found.radial, 4)} N radial, {rounded(found.axial, 4)} N axial"
     turning = keys.bearing.kinematics(speed or 1.0, contact_angle=found.contact_angle)
@@ -183,20 +185,34 @@ def _carried(keys: LoadKeys, picture: Path | None) -> dict[str, Any]:
         carrying = f"{rounded(1e3 * found.carrying_length[heaviest])} of {rounded(1e3 * of.roller_length)} mm"
         say(f"Of the roller that carries most {carrying} touch the inner ring; rings are held against tilt.")
     films = say_films(keys, found)
-    _say_tones(of, turning, f"Hz at {rounded(60.0 * speed, 5)} 1/min" if speed else "per turn")
+    tones = _say_tones(of, turning, speed)
     say(f"Balance to {rounded(found.imbalance, 1)} of the load.")
     if picture is not None:
         write_chart(load_zone.drawn(at_rest).chart, f"{keys.name or 'bearing'}, {load}", picture)
         say(f"Picture: {picture.resolve()}")
     names = ("azimuth", "inner_load", "outer_load", "inner_angle", "inner_pressure", "outer_pressure")
     balls = {name: getattr(found, name)[0] for name in names}
-    tones = {"cage": turning.cage} | {part: turning.tone(part) for part in PARTS}
     ring = {"displacement": found.displacement, "stiffness": found.stiffness, "imbalance": found.imbalance}
-    return {"balls": balls, **ring, "films": films, "tones": tones if speed else None}
+    return {"balls": balls, **ring, "films": films, "tones": tones}
 
 
-def _say_tones(of: AnyBearing, turning: Kinematics, unit: str) -> None:
-    """Tones of the kinematics, and those of waviness where an axial load is carried."""
+def _rolling(of: AnyBearing, speed: float) -> dict[str, Any]:
+    """Tones of a bearing of which no load is known."""
+    tones = _say_tones(of, of.kinematics(speed or 1.0), speed)
+    angle = f" at the free contact angle, {rounded(math.degrees(of.free_angle))}°, which a load changes"
+    say(
+        f"Tones{angle * (of.free_angle > 0.0)}. A load, as --radial '1 kN', gives loads, pressures and "
+        "stiffness."
+    )
+    return {"tones": tones}
+
+
+def _say_tones(of: AnyBearing, turning: Kinematics, speed: float) -> dict[str, float] | None:
+    """Say tones of the kinematics, and those of waviness where an axial load is carried; return the first.
+
+    None at no speed, where they are per turn.
+    """
+    unit = f"Hz at {rounded(60.0 * speed, 5)} 1/min" if speed else "per turn"
     element = of.ELEMENT
     rows = [["cage", f"{turning.cage:.4g}", f"{turning.cage / turning.turning:.4f}", ""]]
     waves = []
@@ -211,7 +227,7 @@ def _say_tones(of: AnyBearing, turning: Kinematics, unit: str) -> None:
             cells = [", ".join(f"{tone:.4g}" for tone in tones) or "–" for tones in heard]
             waves += [[name, str(order), *cells]] if any(heard) else []
     say_table("Tones of pure rolling", ["of", unit, "orders", "meaning"], rows, width=WIDTH)
-    if isinstance(of, RollerBearing) and not of.contact_angle:
-        return
-    title = "Waviness that is heard under an axial load; other small waves move nothing"
-    say_table(title, ["of", "waves per turn", f"axial, {unit}", f"radial, {unit}"], waves, width=WIDTH)
+    if not isinstance(of, RollerBearing) or of.contact_angle:
+        title = "Waviness that is heard under an axial load; other small waves move nothing"
+        say_table(title, ["of", "waves per turn", f"axial, {unit}", f"radial, {unit}"], waves, width=WIDTH)
+    return {"cage": turning.cage} | {part: turning.tone(part) for part in PARTS} if speed else None

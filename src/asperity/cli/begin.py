@@ -147,7 +147,9 @@ def bearing(
     --------
     # which bearings have a name, and where their balls are printed
     asperity bearing --list
-    # loads, contact ellipses, pressures, stiffness, tones
+    # its tones
+    asperity bearing 6205 --speed '1797 1/min'
+    # loads, contact ellipses, pressures, stiffness, too
     asperity bearing 6205 --radial '100 N' --speed '1797 1/min'
     # the same of a roller bearing
     asperity bearing NU205 --radial '2 kN' --speed '1800 1/min'
