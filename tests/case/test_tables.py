@@ -112,7 +112,7 @@ def test_lines_beside_each_other_have_their_energy_mean(tmp_path):
             "rail,date,10 cm,8 cm,6.3 cm,5 cm\nleft,1 May,3,2,1,0\n",
             "4 wavelengths beside each other in line 1, one measurement in a row; allowed: one line for each "
             "wavelength, with the columns wavelength (m), level (dB). Turn the table: write the line "
-            "'wavelength (m), level (dB)' and lines below it as '10, …'",
+            "'wavelength (cm), level (dB)' and lines below it as '10, …'",
         ),
         ("levels", "100 mm;80 mm;63 mm;50 mm\n3;2;1;0\n", "4 wavelengths beside each other in line 1"),
         ("levels", "n;100 mm;80 mm;63 mm;50 mm\n1;3;2;1;0\n", "4 wavelengths beside each other in line 1"),
@@ -351,3 +351,35 @@ def test_bands_are_read_without_weighting(tmp_path):
         np.testing.assert_allclose(centres, 10.0 ** np.array([2.3, 3.0, 3.7]))
         assert level[0] == pytest.approx(at_200, abs=0.11)
         assert level[1] == pytest.approx(70.0, abs=0.01)
+
+
+@pytest.mark.parametrize(("first", "cells", "line", "row"), [
+    ("wavelength (mm)", "315;250;200;160;125;100", "wavelength (mm), level (dB)", "315, …"),
+    ("n", "31.5 cm;25 cm;20 cm;16 cm;12.5 cm;10 cm", "wavelength (cm), level (dB)", "31.5, …"),
+    ("Wellenlänge / cm", "31,5;25;20;16;12,5;10", "wavelength (cm), level (dB)", "31.5, …"),
+])  # fmt: skip
+def test_a_table_on_its_side_is_turned_as_it_is_told(tmp_path, first, cells, line, row):
+    """With the unit that it has: the line that is advised above the cells is read."""
+    file = tmp_path / "levels.csv"
+    file.write_text(f"{first};{cells}\n1;3;2;1;0;-1;-2\n", encoding="utf-8")
+    with pytest.raises(
+        InputError, match=re.escape(f"write the line '{line}' and lines below it as '{row}'.")
+    ):
+        tables.read_levels(file)
+    counted = "wavelength (cm);1;2;3;4\n31.5;3;3;3;3\n"  # names of lines, which count on
+    file.with_name("lines.csv").write_text(counted)
+    with pytest.raises(InputError, match="a heading with the units in brackets"):
+        tables.read_levels(file.with_name("lines.csv"))
+    places = [cell.partition(" ")[0] for cell in cells.split(";")]
+    rows = "".join(f"{place}; {level}\n" for place, level in zip(places, (3, 2, 1, 0, -1, -2), strict=True))
+    file.write_text(f"{line.replace(',', ';')}\n{rows}", encoding="utf-8")
+    np.testing.assert_allclose(tables.read_levels(file)[0][0], 0.315)
+
+
+@pytest.mark.parametrize("title", ["wavenumber (1/m)", "Wellenzahl [1/cm]", "k (m^-1)", "q (1/mm)"])
+def test_wavenumbers_are_to_be_turned_over(tmp_path, title):
+    (tmp_path / "levels.csv").write_text(f"{title};level (dB)\n10;3\n12.5;2\n", encoding="utf-8")
+    with pytest.raises(
+        InputError, match=r"wavelength in m\. Write wavelengths: one over wavenumbers in cycles"
+    ):
+        tables.read_levels(tmp_path / "levels.csv")

@@ -3,7 +3,7 @@
 import math
 import re
 from collections.abc import Iterable, Sequence
-from itertools import islice
+from itertools import islice, pairwise
 from typing import NamedTuple
 
 from asperity.arguments import Array, shown
@@ -29,7 +29,12 @@ _STATISTIC = re.compile(
     r"|uncertainty|spread|sigma|σ|total|sum|gesamt\w*|summe|variance|quantiles?|percentiles?|perzentil\w*|[LP]_?(?:50|90|95|99))\b",
     re.IGNORECASE,
 )
+_WAVENUMBER = re.compile(r"wave ?numbers?|wellenzahl|\b1/[a-zµμ]?m\b|m\^?-1\b", re.IGNORECASE)
+RECIPROCAL = "Write wavelengths: one over wavenumbers in cycles, 2π over those in radians."
 _QUANTITY = re.compile(r"[\d.,]{1,12} ?[a-zA-Zµμ]{1,3}")
+_PLACE = re.compile(r"\d+(?:[.,]\d+)?")
+BAND_STEP = 1.15, 1.4
+"""Ratio of the centres of neighbouring one-third octaves, rounded: 1.26."""
 WIDE = 3
 """Cells of one line that are positions, from which on a table may lie on its side."""
 MOST_LABELS = 8
@@ -158,7 +163,8 @@ def _scale(title: str, column: Column, source: str) -> float:
         return in_si(unit, column.dimension)
     except InputError as error:
         allowed = f"{column.name} in {column.dimension or 'no unit'}"
-        raise InputError(source, f"the heading {shown(title)}", allowed, error.remedy) from None
+        remedy = RECIPROCAL if column.name == "wavelength" and _WAVENUMBER.search(title) else error.remedy
+        raise InputError(source, f"the heading {shown(title)}", allowed, remedy) from None
 
 
 def _offset(title: str, column: Column, source: str) -> float:
@@ -203,9 +209,22 @@ def refuse_statistics(heading: list[str], source: str) -> None:
 
 
 def is_wide(cells: Sequence[str], first: Column) -> bool:
-    """Whether a line has many positions of a first column beside each other, as ``31.5 cm, 25 cm``."""
+    """Whether a line has many positions of a first column beside each other, as ``31.5 cm, 25 cm``.
+
+    Or bands behind a word, as ``wavelength (cm), 31.5, 25``: no names of lines, which count on.
+    """
     held = _positions(cells, first)
-    return len(held) > WIDE and len(held) >= len(cells) - MOST_LABELS
+    if len(held) > WIDE and len(held) >= len(cells) - MOST_LABELS:
+        return True
+    values = [float(found[0].replace(",", ".")) for cell in cells[1:] if (found := _PLACE.match(cell))]
+    steps = [max(a, b) / min(a, b) for a, b in pairwise(values) if min(a, b) > 0.0]
+    in_bands = len(steps) == len(cells) - 2 and all(BAND_STEP[0] < step < BAND_STEP[1] for step in steps)
+    return _is_labelled(cells) and in_bands
+
+
+def _is_labelled(cells: Sequence[str]) -> bool:
+    """Whether a line has numbers behind a word."""
+    return len(cells) > WIDE and are_words(cells) and all(_NUMBER.match(cell) for cell in cells[1:])
 
 
 def _positions(cells: Sequence[str], first: Column) -> list[str]:
@@ -214,17 +233,19 @@ def _positions(cells: Sequence[str], first: Column) -> list[str]:
 
 def refuse_wide(content: str, columns: Sequence[Column], source: str) -> None:
     """Refuse a table that lies on its side, one measurement in a row, and say how to turn it."""
+    columns = list(dict.fromkeys(columns))  # of several alike, one
     first = columns[0]
     for line, cells in islice(lines_of_cells(content), MOST_HEADING):
-        labelled = len(cells) > WIDE and are_words(cells) and all(_NUMBER.match(cell) for cell in cells[1:])
-        if not labelled and not is_wide(cells, first):
+        if not _is_labelled(cells) and not is_wide(cells, first):
             continue
         held = _positions(cells, first) or cells[1:]
+        unit = unit_of(cells[0], first.dimension) or held[0].lstrip("0123456789., ") or first.dimension
         plural = {"frequency": "frequencies"}.get(first.name, f"{first.name}s")
         received = f"{len(held)} {plural} beside each other in line {line}, one measurement in a row"
         allowed = f"one line for each {first.name}, with the columns {named(columns)}"
-        row = ", ".join([held[0].partition(" ")[0], *["…"] * (len(columns) - 1)])
-        remedy = f"Turn the table: write the line {_example(columns)} and lines below it as '{row}'."
+        row = ", ".join([held[0].removesuffix(unit).rstrip(), *["…"] * (len(columns) - 1)])
+        turned = _example([first._replace(dimension=unit), *columns[1:]])
+        remedy = f"Turn the table: write the line {turned} and lines below it as '{row}'."
         raise InputError(source, received, allowed, remedy)
 
 
