@@ -376,6 +376,22 @@ def test_balls_slide_in_their_grooves_without_spin_under_a_radial_load(runs):
         assert of_paths not in page
 
 
+def test_raceways_wear_by_the_work_of_sliding_where_a_coefficient_is_given(runs):
+    """Archard: the volume is k/H of the heat over friction of all contacts; the page says how deep."""
+    tree = runs(BEARING | {"wear_coefficient": 1e-8})
+    found = group(tree)
+    assert "wear_rate" not in group(runs(BEARING))
+    heat = found["sliding_heat"].sum("ball").mean("cage_angle")
+    np.testing.assert_allclose(found["worn_volume_rate"], 1e-8 / B6205.hardness * heat, rtol=1e-9)
+    depth = found["wear_rate"].sel(ring="outer")
+    assert abs(np.sin(found["raceway_angle"].values[depth.values.argmax()])) < 0.1
+    assert float(depth.min()) == 0.0
+    page = page_of(tree)
+    assert "Wear of the raceways" in page
+    assert "if all of each contact slips" in page
+    assert any("Archard" in each for each in json.loads(tree.attrs["citations"]))
+
+
 def test_no_force_is_written_below_zero_where_a_ball_leaves_the_ring(runs):
     """The filter that thins a record rings where a force begins or ends at once: by newtons at a pit."""
     found = group(runs(BEARING), "rolling")

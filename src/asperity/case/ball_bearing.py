@@ -151,6 +151,13 @@ class BearingUnderLoad(AnyCase):
     cage_slip: tuple[float, ...] = key(
         _SLIPS, [0.0, 0.0], "least and largest share by which the cage lags, drawn anew at each turn"
     )
+    wear_coefficient: float | None = optional(
+        Number(above=0, at_most=1),
+        1e-8,
+        "Archard's k: volume that wears off a raceway, times its hardness, over load times sliding",
+        "nothing wears",
+        "1e-12 to 0.1: surfaces in full films and dry ones lie between",
+    )
     bearing: BearingGeometry = section(BearingGeometry, "the bearing: named, or by its dimensions")
     shaft: ShaftKeys = section(ShaftKeys, "what the inner ring carries, and what holds it")
     housing: HousingKeys = section(

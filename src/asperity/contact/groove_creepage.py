@@ -14,6 +14,8 @@ t − t³/3 = 1/3. K. L. Johnson, Contact Mechanics (1985), section 8.5, prints 
 """
 RADII, ANGLES = 24, 96
 """Places in a contact over which sliding is summed, along a radius of the ellipse and around it."""
+CHORD = 48
+"""Places on a chord of the contact along the path over which it is summed."""
 
 
 def contact_curvature(ball_radius: float, groove_radius: float) -> float:
@@ -105,6 +107,46 @@ def sliding_speed(
     radius = np.sqrt(1.0 - depth**2)[:, None]
     x = b[..., None, None] * radius * np.cos(around)
     y = a[..., None, None] * radius * np.sin(around)
-    lengthwise = conformal_creepage(y, a[..., None, None], curvature, along) - phi[..., None, None] * y
-    slip = np.hypot(lengthwise, phi[..., None, None] * x).mean(axis=-1)
+    slip = _slip((x, y), a[..., None, None], phi[..., None, None], curvature, along).mean(axis=-1)
     return 3.0 * Q * (slip @ (weights * depth**2))
+
+
+def sliding_across(
+    load: ArrayLike,
+    half_axes: tuple[ArrayLike, ArrayLike],
+    spin: ArrayLike,
+    curvature: float,
+    along: float,
+    shares: ArrayLike,
+) -> Array:
+    """Pressure times sliding, summed along the path, at places across a contact that slips everywhere, N/m.
+
+    Times Archard's coefficient over the hardness it is the depth that one passing of the contact wears.
+
+    Parameters
+    ----------
+    load, half_axes, spin, curvature, along
+        As of `sliding_speed`, whose sum over places across it is.
+    shares : array_like (k,)
+        Places across over the half axis, from -1 to 1.
+
+    Returns
+    -------
+    ndarray (..., k)
+        ∫ p |s| dx, zero at both ends; by Gauss and Chebyshev, whose weight is that of Hertz's pressure.
+    """
+    Q, b, a, phi = (each[..., None, None] for each in np.broadcast_arrays(load, *half_axes, spin))
+    share = np.asarray(shares, dtype=float)[:, None]
+    chord = 1.0 - share**2
+    around = np.pi * np.arange(1, CHORD + 1) / (CHORD + 1)
+    x = b * np.sqrt(chord) * np.cos(around)
+    slip = _slip((x, a * share), a, phi, curvature, along)
+    rise = 1.5 * (Q / a * chord)[..., 0]
+    return rise * (slip @ np.sin(around) ** 2) / (CHORD + 1)
+
+
+def _slip(place: tuple[Array, Array], half_axis: Array, spin: Array, curvature: float, along: float) -> Array:
+    """Sliding over the speed of rolling |(ξ(y) − φ y, φ x)| at places x and y in a contact, m."""
+    x, y = place
+    lengthwise = conformal_creepage(y, half_axis, curvature, along) - spin * y
+    return np.hypot(lengthwise, spin * x)

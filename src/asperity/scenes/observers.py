@@ -8,6 +8,7 @@ from asperity.scenes import (
     bearing_heard,
     bearing_levels,
     bearing_parts,
+    bearing_wear,
     creep,
     roundness,
     run_up,
@@ -31,6 +32,7 @@ OF_BEARINGS = (
     bearing_levels.OBSERVER,
     bearing_film.OBSERVER,
     bearing_creepage.OBSERVER,
+    bearing_wear.OBSERVER,
     run_up.OBSERVER,
     bearing_parts.OBSERVER,
 )

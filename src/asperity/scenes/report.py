@@ -28,6 +28,7 @@ from asperity.reporting.page import answers_of, drawn_figures, page, sections_of
 from asperity.results import read_result
 from asperity.scenes.figures import (
     bearing,
+    bearing_wear,
     effects,
     force,
     measured,
@@ -60,7 +61,7 @@ CHAPTERS = (
     Chapter(
         "load",
         "How it carries its load",
-        (bearing.ball_turn, bearing.along_roller, bearing.ball_films),
+        (bearing.ball_turn, bearing.along_roller, bearing.ball_films, bearing_wear.raceway_wear),
         (bearing.ball_contacts_table, bearing.films_table, bearing.ball_sliding_table),
     ),
     Chapter(

@@ -51,6 +51,17 @@ SLIDING_HEAT = _bearing(
     "heat of a contact over its coefficient of friction, if all of it slips",
     missing=_BETWEEN,
 )
+_worn = partial(Entry, "bearing", condition="of a ball bearing with a wear_coefficient")
+RACEWAY_ANGLE = _worn("raceway_angle", "rad", "place around a raceway, from the radial load")
+WEAR_RATE = _worn(
+    "wear_rate(ring, raceway_angle)",
+    "m/s",
+    "depth that wears in a second where a groove wears most, if all of each contact slips",
+)
+WORN_AREA_RATE = _worn(
+    "worn_area_rate(ring, raceway_angle)", "m2/s", "area of a groove's section that wears in a second"
+)
+WORN_VOLUME_RATE = _worn("worn_volume_rate(ring)", "m3/s", "volume of a raceway that wears in a second")
 RING_DISPLACEMENT = _bearing(
     "ring_displacement(direction, cage_angle)", "m", "static displacement of the inner ring"
 )

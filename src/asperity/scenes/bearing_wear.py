@@ -1,0 +1,34 @@
+"""Wear of the raceways of a ball bearing over the angle around them, by Archard's law."""
+
+from asperity.contact.hertz import Hertz
+from asperity.scenes.computed_bearing import ComputedBearing
+from asperity.scenes.observer import Observer
+from asperity.schema import Values, bearing
+from asperity.structures.raceway_wear import raceway_wear
+
+
+def wear_group(computed: ComputedBearing) -> Values:
+    """Lay out how fast both raceways wear under the static load, at places around them."""
+    case = computed.case
+    assert case.wear_coefficient is not None
+    found = raceway_wear(case.static, case.kinematics, case.wear_coefficient)
+    return {
+        bearing.RACEWAY_ANGLE: found.angle,
+        bearing.WEAR_RATE: found.depth.max(axis=2),
+        bearing.WORN_AREA_RATE: found.area,
+        bearing.WORN_VOLUME_RATE: found.volume,
+    }
+
+
+def _wears(computed: ComputedBearing) -> bool:
+    return computed.case.wear_coefficient is not None and isinstance(computed.case.contacts[0][0], Hertz)
+
+
+OBSERVER = Observer(
+    "bearing_wear",
+    (bearing.RACEWAY_ANGLE, bearing.WEAR_RATE, bearing.WORN_AREA_RATE, bearing.WORN_VOLUME_RATE),
+    wear_group,
+    needs=("bearing",),
+    asked_of=_wears,
+    sources=("J. F. Archard, J. Appl. Phys. 24 (1953) 981 (wear by sliding under a load).",),
+)

@@ -1,0 +1,108 @@
+"""Wear of the raceways of a ball bearing by place: Archard's law for balls that slide in their grooves."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from asperity.arguments import Array, NDArray, positive
+from asperity.contact.groove_creepage import contact_curvature, sliding_across
+from asperity.structures.ball_bearing import Kinematics
+from asperity.structures.bearing_creepage import RINGS, BearingCreepage, Ring, creepage_of
+from asperity.structures.bearing_statics import LoadedBearing
+
+ACROSS = 81
+"""Places across a contact at which depths are found."""
+IN_GROOVE = 241
+"""Places across a groove, from end to end of what balls touch of it."""
+
+
+@dataclass(frozen=True, eq=False)
+class RacewayWear:
+    """How fast both raceways wear, the inner one first, at n places around them.
+
+    Attributes
+    ----------
+    angle : ndarray (n,)
+        Places around, from the radial load on, rad.
+    across : ndarray (2, k)
+        Places across the groove along its arc, from where a contact angle of 0 is, m.
+    depth : ndarray (2, n, k)
+        Depth that is worn in a second there, m/s.
+    area : ndarray (2, n)
+        Area of the section that is worn in a second, m²/s.
+    volume : ndarray (2,)
+        Volume that is worn in a second, m³/s.
+    """
+
+    angle: Array
+    across: Array
+    depth: Array
+    area: Array
+    volume: Array
+
+
+def raceway_wear(loaded: LoadedBearing, turning: Kinematics, coefficient: float) -> RacewayWear:
+    """Wear of both raceways of a loaded bearing that turns, if all of each contact slips: the most there is.
+
+    Parameters
+    ----------
+    loaded : LoadedBearing
+        The bearing under its load, at angles of the cage over the passing of a ball.
+    turning : Kinematics
+        What turns how fast.
+    coefficient : float
+        Archard's k: volume that is worn times hardness, over load times sliding.
+
+    Returns
+    -------
+    RacewayWear
+
+    Notes
+    -----
+    A contact that passes wears k/H ∫ p |s| dx off the raceway, with Hertz's pressure p, the creepage s of
+    `asperity.structures.bearing_creepage` and the hardness H of the rings. A ring that stands still meets
+    each ball at one place under the load of that place; one that turns meets it everywhere, and wears alike
+    all around. Balls that do not touch both rings are left out.
+    """
+    over_hardness = positive("wear coefficient", coefficient) / loaded.bearing.hardness
+    azimuth = np.mod(loaded.azimuth, 2.0 * np.pi).reshape(-1)
+    order = np.argsort(azimuth)
+    found = creepage_of(loaded)
+    rings = [_worn(loaded, found, turning, ring, order) for ring in RINGS]
+    across, depth, area, volume = (np.array(each) for each in zip(*rings, strict=True))
+    return RacewayWear(
+        azimuth[order], across, over_hardness * depth, over_hardness * area, over_hardness * volume
+    )
+
+
+def _worn(
+    loaded: LoadedBearing, found: BearingCreepage, turning: Kinematics, ring: Ring, order: NDArray[np.intp]
+) -> tuple[Array, Array, Array, float]:
+    """Places across, and depth, area and volume of one ring over k/H, at places around in an order."""
+    of = loaded.bearing
+    number = RINGS.index(ring)
+    contact = (of.inner_contact, of.outer_contact)[number]
+    groove = (of.inner_conformity, of.outer_conformity)[number] * of.ball_diameter
+    angles = (loaded.inner_angle, loaded.outer_angle)[number]
+    loads = (loaded.inner_load, loaded.outer_load)[number]
+    turns = (turning.inner, turning.outer)[number]
+    sliding = found.sliding[number]
+    touching = np.isfinite(sliding)
+    load, angle, spin = (np.where(touching, each, 0.0) for each in (loads, angles, found.spin[number]))
+    along, across = (np.where(touching, each, 1.0) for each in loaded.semi_axes(ring))
+    shares = np.linspace(-1.0, 1.0, ACROSS)
+    curvature = contact_curvature(0.5 * of.ball_diameter, groove)
+    lines = sliding_across(load, (along, across), spin, curvature, contact.radius_x, shares)
+    places = groove * angle[..., None] + across[..., None] * shares
+    arc = np.linspace(places[touching].min(), places[touching].max(), IN_GROOVE)
+    contacts = zip(places.reshape(-1, ACROSS)[order], lines.reshape(-1, ACROSS)[order], strict=True)
+    depth = np.array([np.interp(arc, at, line) for at, line in contacts])
+    area = np.nan_to_num(sliding).reshape(-1)[order]
+    if turns:
+        depth = np.broadcast_to(depth.mean(axis=0), depth.shape)
+        area = np.full(area.shape, area.mean())
+    passing = of.balls * abs(turning.cage - turns)
+    side = -1.0 if ring == "inner" else 1.0
+    around = math.pi * (of.pitch_diameter + side * of.ball_diameter * math.cos(loaded.contact_angle))
+    return arc, passing * depth, passing * area, passing * around * float(area.mean())
