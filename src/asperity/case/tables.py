@@ -31,7 +31,6 @@ from asperity.parameters import FROM_PYTHON, File, Key, Origin, Problems, Quanti
 from asperity.spectra import energy_sum
 from asperity.structures import support, track_parameters
 from asperity.structures.outline import checked_outline
-from asperity.surfaces.bands import likely_band
 from asperity.text_files import lines_in, lines_of_cells, number_in, read_text
 from asperity.units import unit_in_brackets
 from asperity.written_numbers import count_of, rounded
@@ -120,6 +119,8 @@ def read_levels(table: TableSource) -> tuple[Array, Array]:
             name_of(table), f"a wavelength of {wavelength[-1]:g} m", "wavelengths greater than 0"
         )
     if wavelength[0] > LONGEST_WAVE:
+        from asperity.surfaces.bands import likely_band  # which loads transforms
+
         received = f"wavelengths of {wavelength[-1]:.4g} m to {wavelength[0]:.4g} m"
         unit = max(_SMALLER, key=lambda unit: int(likely_band(wavelength * _SMALLER[unit]).sum()))
         remedy = f"Are they in {unit}? Then write 'wavelength ({unit})' above them."
