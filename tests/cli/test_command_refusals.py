@@ -109,7 +109,8 @@ REFUSED = [
     ("compare", "Missing argument 'RUNS...'"),
     ("new ball-on-bam", 'Error: kind: received \'ball-on-bam\'; allowed: "ball-on-beam", "wheel-on-rail", '
      '"bodies", "ball-bearing", "roller-bearing", "study", "what-helps", "what-helps-in-bearings", '
-     '"optimisation", "optimisation-of-bearings". Did you mean "ball-on-beam"?'),
+     '"what-helps-in-roller-bearings", "optimisation", "optimisation-of-bearings". '
+     'Did you mean "ball-on-beam"?'),
     ("new ball-on-beam --law aerial", "law: received 'aerial'; allowed: … Did you mean \"areal\"?"),
     # files and folders
     ("run|check|study absent.toml", "Error: absent.toml: received no such file; allowed: the path of a"),

@@ -18,7 +18,7 @@ from asperity.rolling.bearing import BearingRings, roll_bearing
 from asperity.scenarios.prepared_bearing import expected, prepare_bearing, raceways_of
 from asperity.scenarios.roller_raceways import OnRollerRaceway, on_surface, surface_on
 from asperity.scenes.computed_bearing import compute_bearing
-from asperity.scenes.figures.bearing import along_roller, ball_contacts_table, films_table
+from asperity.scenes.figures.bearing import _faults, along_roller, ball_contacts_table, films_table
 from asperity.serving.contact_preview import PressedSample
 from asperity.structures.ring import Ring
 from asperity.surfaces.faults import Fault
@@ -249,6 +249,40 @@ def test_on_the_page_the_most_loaded_roller_is_pressed_on_its_raceway():
     assert rough.source.startswith("the most loaded roller on the outer raceway")
 
 
+ROLLER_DENTED = {"on": "roller", "roller": 3, "length": "1 mm", "width": "2 mm", "depth": "20 um"}
+
+
+def test_what_is_on_rollers_is_said_of_rollers():
+    """As read and as written; the names that balls have are read, too, and mean the same."""
+    named = as_case(CASE | {"rollers": {"waviness": "50 nm"}, "fault": ROLLER_DENTED})
+    on_ball = {"ball" if name == "roller" else name: value for name, value in ROLLER_DENTED.items()}
+    as_balls = as_case(CASE | {"balls": {"waviness": "50 nm"}, "fault": on_ball | {"on": "ball"}})
+    assert named == as_balls
+    text = named.to_toml()
+    assert "[rollers]" in text
+    assert 'on = "roller"' in text
+    assert "ball" not in text
+    assert not named.has_smooth_balls
+    assert (named.fault.part, named.fault.number) == ("ball", 3)
+    assert set(named.helping_changes) > {"rollers half as wavy", "5 µm less clearance", "a fifth slower"}
+    assert named.called("balls") == "rollers" == next(iter({*type(named).inner} & {"balls", "rollers"}))
+
+
+def test_a_dent_of_a_roller_is_drawn_on_it_and_each_part_runs_alone():
+    short = {"speed": "12000 1/min", "duration": "30 ms", "settling": "1 ms"}
+    short |= {"bearing": {"name": "NU205", "rollers": 5}, "rollers": {"waviness": "50 nm"}}
+    found = asperity.run(as_case(CASE | short | {"fault": ROLLER_DENTED}))
+    assert _faults(found) == {"ball": [(0.0, 3)]}
+    alone = found["bearing"].dataset.source.values.tolist()
+    assert alone == ["perfect surfaces", "the rollers", "the fault"]
+
+
+def test_what_helps_is_compared_with_the_case():
+    study = asperity.what_helps(as_case(CASE | {"inner_raceway": {"waviness": "0.1 um"}}))
+    names = set(study.sweep["variant"])
+    assert {"inner raceway half as wavy", "preloaded by 5 µm"} <= names
+
+
 test_what_no_roller_bearing_has_is_refused = refusals(
     ({"laws": ["table", "areal"]}, 'laws: received table; allowed: "areal".*that of slices'),
     ({"bearing": {}}, "bearing.name: received none, and no rollers and no roller_diameter"),
@@ -256,6 +290,13 @@ test_what_no_roller_bearing_has_is_refused = refusals(
     ({"bearing": {"name": "6205"}}, "bearing.name: received '6205'"),
     ({"axial": "10 N"}, "axial: received 10 N.*contact_angle is 0"),
     ({"wear_coefficient": 1e-8}, "wear_coefficient: received 1e-08; allowed: none: rollers slide nowhere"),
+    ({"fault": {"on": "cage"}}, 'fault.on: received .cage.; allowed: "outer", "inner", "roller"'),
+    ({"fault": {"length": "1 mm"}}, 'fault.on: received nothing; allowed: "outer", "inner", "roller"'),
+    (
+        {"fault": ROLLER_DENTED | {"roller": 14}},
+        "fault.roller: received 14; allowed: 1 to 13, as many rollers",
+    ),
+    ({"balls": {"waviness": 1e-7}, "rollers": {"waviness": 1e-7}}, "received both balls and rollers"),
     of=lambda changes: as_case(CASE | changes),
     error=CaseError,
 )

@@ -226,7 +226,13 @@ class BearingUnderLoad(AnyCase):
     @property
     def has_smooth_balls(self) -> bool:
         """Whether nothing is on any ball."""
-        return not (self.balls.given() or any(each.on == "ball" for each in self.faults.values()))
+        return not (self.elements.given() or any(each.part == "ball" for each in self.faults.values()))
+
+    @property
+    def elements(self) -> AroundKeys:
+        """What is on each ball, or on each roller."""
+        on_each: AroundKeys = getattr(self, self.called("balls"))
+        return on_each
 
     @property
     def kinematics(self) -> Kinematics:
@@ -368,9 +374,12 @@ class BearingUnderLoad(AnyCase):
         balls = self.bearing.bearing.balls
         for name, fault in self.faults.items():
             if fault.on is None:
-                yield InputError(f"{name}.on", "nothing", Choice(PARTS).allowed, "Or remove the section.")
-            if fault.ball > balls:
-                yield InputError(f"{name}.ball", f"{fault.ball}", f"1 to {balls}, as many balls as there are")
+                allowed = fault.keys["on"].kind.allowed
+                yield InputError(f"{name}.on", "nothing", allowed, "Or remove the section.")
+            if fault.number > balls:
+                element = fault.ELEMENT
+                allowed = f"1 to {balls}, as many {element}s as there are"
+                yield InputError(f"{name}.{element}", f"{fault.number}", allowed)
         for name in ("cage_slip", "envelope_band"):
             pair = getattr(self, name)
             if pair is not None and (len(pair) != 2 or pair[0] > pair[1]):

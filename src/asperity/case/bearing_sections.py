@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import MISSING, dataclass, fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from asperity.arguments import Array, require
 from asperity.case.form import Numbers, Section, name_of
@@ -194,24 +194,55 @@ class AroundKeys(Section, parameters=_AROUND | {"trace": replace(_AROUND["trace"
 class FaultKeys(Section, parameters=_keys_of(Fault)):
     """One fault of a raceway or of a ball, or several alike around it."""
 
+    ELEMENT: ClassVar = "ball"
+    """What may have it beside the raceways."""
+
     on: str | None = optional(Choice(PARTS), "outer", "part that has it", "no fault")
     ball: int = key(
         _COUNT, 1, "ball that has it, by number", "1 to 500: balls are fewer", goes_with="on=ball"
     )
 
     @property
+    def part(self) -> str | None:
+        """Part that has it, of `PARTS`: what rolls is the ball."""
+        return "ball" if self.on == self.ELEMENT else self.on
+
+    @property
+    def number(self) -> int:
+        """Number of the ball or roller that has it."""
+        return int(getattr(self, self.ELEMENT))
+
+    @property
     def fault(self) -> Fault | None:
         """The fault, if there is one."""
         given = _values(self)
-        del given["ball"]
+        del given[self.ELEMENT]
         return Fault(**given) if given.pop("on", None) else None
 
-    def lies_on(self, part: str, ball: int) -> bool:
-        """Whether a raceway has it, or the ball of a number."""
-        return self.on == part and (part != "ball" or self.ball == ball)
+    def lies_on(self, part: str, number: int) -> bool:
+        """Whether a raceway has it, or the ball or roller of a number."""
+        return self.part == part and (part != "ball" or self.number == number)
 
     def problems(self) -> Iterator[InputError]:
         """All that a fault of its shape has, and a part that has it."""
         if self.on is None and self.given():
-            yield InputError("on", "nothing", Choice(PARTS).allowed, "Say which part has the fault.")
+            allowed = self.keys["on"].kind.allowed
+            yield InputError("on", "nothing", allowed, "Say which part has the fault.")
         yield from _refused(lambda: self.fault)
+
+
+class RollerFaultKeys(FaultKeys):
+    """One fault of a raceway or of a roller, or several alike around it."""
+
+    ELEMENT = "roller"
+    RENAMED: ClassVar = {"ball": "roller"}
+
+    on: str | None = optional(Choice(("outer", "inner", "roller")), "outer", "part that has it", "no fault")
+    roller: int = key(
+        _COUNT, 1, "roller that has it, by number", "1 to 500: rollers are fewer", goes_with="on=roller"
+    )
+
+    @classmethod
+    def prepared(cls, given: Mapping[str, Any]) -> Mapping[str, Any]:
+        """A roller that is called a ball, as what rolls is in results."""
+        return {**given, "on": "roller"} if given.get("on") == "ball" else given

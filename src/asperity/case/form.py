@@ -88,6 +88,8 @@ class Section:
     inner: ClassVar[dict[str, Inner]] = {}
     ALTERNATIVES: ClassVar[tuple[tuple[str, str], ...]] = ()
     """Pairs of keys of which one may be given."""
+    RENAMED: ClassVar[Mapping[str, str]] = {}
+    """Keys and sections of its bases by their names there, and what they are called here; both are read."""
     OFFERED: ClassVar[tuple[str, ...]] = ()
     """What `dir` lists beside the keys: what a section does for people."""
     given_names: frozenset[str]
@@ -100,6 +102,8 @@ class Section:
         """Collect the keys: with those of `parameters`, and other `defaults`, as in TOML, for some."""
         declared: dict[str, Any] = {}
         for base in reversed(cls.__mro__):
+            renamed = vars(base).get("RENAMED", {})
+            declared = {renamed.get(name, name): each for name, each in declared.items()}
             own = vars(base).get("keys", {}) | vars(base).get("inner", {}) | vars(base)
             declared |= {name: each for name, each in own.items() if isinstance(each, Key | Inner)}
         declared |= parameters or {}
@@ -110,6 +114,11 @@ class Section:
         inner = [(name, each) for name, each in declared.items() if isinstance(each, Inner)]
         cls.inner = dict(sorted(inner, key=lambda named: named[1].last))
         type.__setattr__(cls, "__doc__", _Documentation(vars(cls)["__doc__"] or ""))
+
+    @classmethod
+    def called(cls, name: str) -> str:
+        """What a key or a section of its bases is called here."""
+        return cls.RENAMED.get(name, name)
 
     @classmethod
     def summary(cls) -> str:
@@ -157,8 +166,11 @@ class Section:
         """Read all keys as a section of a whole, or the whole itself; return what is wrong with them."""
         errors = list[InputError]()
         held = self.__dict__
+        if twice := [pair for pair in self.RENAMED.items() if set(pair) <= given.keys()]:
+            return [InputError("", f"both {' and '.join(twice[0])}", "one of them", "Remove one.")]
         try:
-            given = self.prepared(numbered(given))
+            called = {self.called(name): value for name, value in given.items()}
+            given = self.prepared(numbered(called))
         except Problems as problems:
             return problems.errors
         held["given_names"] = frozenset([name for name, value in given.items() if value is not None])

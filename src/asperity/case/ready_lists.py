@@ -9,6 +9,7 @@ from asperity.case import toml
 
 OVER_TRACKS, IN_BEARINGS = "what_helps.toml", "what_helps_in_bearings.toml"
 """Of what is heard beside a track, and of a ball bearing."""
+IN_ROLLER_BEARINGS = "what_helps_in_roller_bearings.toml"
 
 NamedChanges = Mapping[str, Mapping[str, Any]]
 """Changes of keys of a case, by what they are called."""
@@ -28,5 +29,6 @@ def listed_changes(name: str) -> NamedChanges:
 READY_LISTS: Mapping[str, Callable[[], str]] = {
     "what-helps": ready_list,
     "what-helps-in-bearings": partial(ready_list, IN_BEARINGS),
+    "what-helps-in-roller-bearings": partial(ready_list, IN_ROLLER_BEARINGS),
 }
 """By the words of ``asperity new``."""

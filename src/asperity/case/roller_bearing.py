@@ -7,15 +7,16 @@ from typing import TYPE_CHECKING, ClassVar
 
 from asperity.case.any_case import LAW
 from asperity.case.ball_bearing import BearingUnderLoad
-from asperity.case.bearing_sections import AroundKeys, FaultKeys
+from asperity.case.bearing_sections import AroundKeys, RollerFaultKeys
 from asperity.case.form import section
 from asperity.case.lubricant import RollerLubricantKeys
 from asperity.case.named_bearing import NamedBearing
-from asperity.case.ready_lists import NamedChanges
+from asperity.case.ready_lists import IN_ROLLER_BEARINGS, NamedChanges, listed_changes
+from asperity.case.sections import DURATION
 from asperity.case.speed import span_of
 from asperity.errors import InputError
 from asperity.laws import LawSpec, Need, spec_of
-from asperity.parameters import Choice, ListOf, key, keys_of, optional
+from asperity.parameters import Choice, Flag, ListOf, key, keys_of, optional
 from asperity.rolling.resolution import steps_per_resonance
 from asperity.structures.roller_bearing import ROLLER_BEARINGS, RollerBearing
 from asperity.written_numbers import rounded
@@ -87,6 +88,7 @@ class RollerBearingUnderLoad(BearingUnderLoad):
     NEEDED = "a bearing and its load"
     OPTIMISED_BY = ""
     ROLLS: ClassVar = "roller"
+    RENAMED: ClassVar = {"balls": "rollers"}
     WRITTEN_OUT: ClassVar = {
         "bearing.name": '"NU205"', "radial": '"2 kN"', "inner_raceway.waviness": '"0.2 um"',
         "outer_raceway.waviness": '"0.2 um"',
@@ -98,17 +100,24 @@ class RollerBearingUnderLoad(BearingUnderLoad):
         [BY_SLICES],
         "laws of the contact force: areal, whose force on rollers is that of the slices of ISO/TS 16281",
     )
+    time_step: float | None = optional(
+        DURATION,
+        "2 us",
+        "time step",
+        "a tenth of a roller's period, or of that of the highest frequency; a fifth of a roller's far beyond "
+        "that; a quarter of that of a ring's highest mode",
+        "1 ns to 1 ms: bearings ring between",
+    )
+    centrifugal: bool = key(Flag(), True, "whether rollers press the outer ring as they go round")
     bearing: RollerGeometry = section(  # type: ignore[assignment]
         RollerGeometry, "the bearing: named, or by its dimensions"
     )
     lubricant: RollerLubricantKeys = section(
         RollerLubricantKeys, "the oil: a film in each contact, dry without it"
     )
-    balls: AroundKeys = section(AroundKeys, "what is on each roller all around")
-    fault: FaultKeys = section(
-        FaultKeys,
-        "a fault of a raceway or of a roller, there on = ball; of several each below [[fault]]",
-        repeated=True,
+    rollers: AroundKeys = section(AroundKeys, "what is on each roller all around")
+    fault: RollerFaultKeys = section(
+        RollerFaultKeys, "a fault of a raceway or of a roller; of several each below [[fault]]", repeated=True
     )
 
     if TYPE_CHECKING:
@@ -127,8 +136,8 @@ class RollerBearingUnderLoad(BearingUnderLoad):
 
     @property
     def helping_changes(self) -> NamedChanges:
-        """No ready list: that of balls speaks of grooves and preload."""
-        return {}
+        """Changes that may make it quieter: clearance, crowning, waves of each part, speed, …."""
+        return listed_changes(IN_ROLLER_BEARINGS)
 
     @property
     def title(self) -> str:

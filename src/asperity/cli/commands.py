@@ -30,7 +30,8 @@ from asperity.terminal import (
     standard_streams,
 )
 
-TEMPLATES = ("study", "what-helps", "what-helps-in-bearings", "optimisation", "optimisation-of-bearings")
+TEMPLATES = ("study", "what-helps", "what-helps-in-bearings", "what-helps-in-roller-bearings", "optimisation",
+             "optimisation-of-bearings")  # fmt: skip
 """What 'asperity new' writes beside cases."""
 PATH = click.Path(path_type=Path)
 PICTURES = (".svg", ".pdf", ".png")

@@ -95,9 +95,9 @@ def doubt_bearing(case: BearingUnderLoad) -> None:
         )
     for name, keys in case.faults.items():
         if (fault := keys.fault) is not None and fault.width > of.ball_diameter:
-            told = f"balls are {rounded(1e3 * of.ball_diameter)} mm wide"
+            told = f"{of.ELEMENT}s are {rounded(1e3 * of.ball_diameter)} mm wide"
             _warn(f"{name}.width", fault.width, "m", told, "mm")
-    for name in ("inner_raceway", "outer_raceway", "balls"):
+    for name in map(case.called, ("inner_raceway", "outer_raceway", "balls")):
         roughness = getattr(case, name).roughness
         if roughness is not None and roughness < SMOOTHEST:
             told = "the smoothest surfaces that are made have 0.1 nm"

@@ -56,7 +56,7 @@ SEEDS = 1000
 
 def named_on(case: BearingUnderLoad, section: str) -> str:
     """What a section of a case is about that says what is on a part."""
-    return f"the {names_in(case.bearing.bearing)['ball']}" if section == "balls" else ON[section]
+    return f"the {names_in(case.bearing.bearing)['ball']}" if section == case.called("balls") else ON[section]
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +80,7 @@ def bearing_parts(case: BearingUnderLoad) -> list[tuple[str, Any, float]]:
     return [
         ("inner", case.inner_raceway, of.raceway_radii[0]),
         ("outer", case.outer_raceway, of.raceway_radii[1]),
-        ("ball", case.balls, 0.5 * of.ball_diameter),
+        ("ball", case.elements, 0.5 * of.ball_diameter),
     ]
 
 
@@ -114,10 +114,10 @@ def prepare_bearing(case: BearingUnderLoad, source: str = "case") -> PreparedBea
 
 def _by_key(case: BearingUnderLoad, part: str, keys: AroundKeys, error: InputError) -> InputError:
     """An error about what is on a part, by the key of the case that it is about."""
-    section = "balls" if part == "ball" else f"{part}_raceway"
+    section = case.called("balls") if part == "ball" else f"{part}_raceway"
     what, _, of = error.what.partition(" of the fault")
     if of:
-        damaged = (name for name, each in case.faults.items() if each.on == part)
+        damaged = (name for name, each in case.faults.items() if each.part == part)
         return error.about(f"{next(damaged, 'fault')}.{what}")
     heights = ("waviness", "amplitudes", "trace", "roughness", "map")
     sources = {"rms slope": heights[::-1], "waves per turn": ("last_order", "waves")}
@@ -160,7 +160,7 @@ def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], preparin
     turning = prepared.case.kinematics
     found = prepared.case.static
     steps = round((case.settling + case.duration) / case.step)
-    textured = sum(bool(getattr(case, key).given()) for key in ON)
+    textured = sum(bool(getattr(case, case.called(key)).given()) for key in ON)
     runs = len(case.laws) + textured + (textured > 0)
     solutions = {}
     for name, on in zip(RINGS, raceways_of(prepared, progress=None), strict=True):

@@ -132,7 +132,7 @@ def compute_bearing(prepared: PreparedBearing, progress: Progress) -> ComputedBe
 def rolled_alone(prepared: PreparedBearing, progress: Progress) -> dict[str, RolledBearing]:
     """Run the bearing by `BY_PARTS` with what is on each part alone, and on none; none if nothing is."""
     case = prepared.case
-    textured = [key for key in ON if getattr(case, key).given()]
+    textured = [key for key in map(case.called, ON) if getattr(case, key).given()]
     if not textured:
         return {}
     names = ["perfect surfaces", *(named_on(case, key) for key in textured)]

@@ -242,7 +242,7 @@ def _labels(member: Member, case: BearingUnderLoad) -> dict[str, Any]:
     """What is told of the signal of a member, in SI, units behind the names."""
     found: dict[str, Any] = {}
     for section, keys in (case.faults or {"fault": case.fault}).items():
-        own = {"on": keys.on, "ball": keys.ball if keys.on == "ball" else 0}
+        own = {"on": keys.part, "ball": keys.number if keys.part == "ball" else 0}
         fault = keys.fault
         for name, missing in FAULT.items():
             given = own[name] if name in own else getattr(fault, name, missing)

@@ -128,9 +128,12 @@ def _faults(tree: DataTree) -> dict[str, list[tuple[float, int]]]:
     found: dict[str, list[tuple[float, int]]] = {}
     name = "fault"
     count = 1
-    while (part := data.case_words(tree, f"{name}.on")) in NAMES:
+    element = _element(tree)
+    parts = {part: part for part in NAMES} | {element: "ball"}
+    while (on := data.case_words(tree, f"{name}.on")) in parts:
         angle = data.case_quantity(tree, f"{name}.angle", "rad") or 0.0
-        found.setdefault(part, []).append((angle, int(data.case_words(tree, f"{name}.ball") or 1)))
+        number = int(data.case_words(tree, f"{name}.{element}") or 1)
+        found.setdefault(parts[on], []).append((angle, number))
         name = f"fault[{count + 1}]"
         count = count + 1
     return found
