@@ -2,6 +2,7 @@
 ones."""
 
 import re
+import tracemalloc
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -19,7 +20,7 @@ from asperity.diagnostics import (
     prewhitened,
 )
 from asperity.diagnostics.confidence import COEFFICIENTS, Basis
-from asperity.diagnostics.decision import Diagnosis
+from asperity.diagnostics.decision import Diagnosis, _agrees
 from asperity.diagnostics.prominence import Prominence
 from asperity.errors import InputError
 from asperity.structures.ball_bearing import BallBearing
@@ -167,25 +168,64 @@ def test_a_long_record_whose_blows_slip_is_read_in_pieces():
     assert diagnosis.resolution == pytest.approx(0.1)
 
 
+SLOW = 3.0
+
+
+def slow_record(monkeypatch, turns, together, signal, speed=SLOW):
+    """Verdict on a record of a slow shaft, in pieces of so many turns, and so many samples together."""
+    monkeypatch.setattr("asperity.diagnostics.decision.ENOUGH", turns)
+    for module in ("decision", "recording"):
+        monkeypatch.setattr(f"asperity.diagnostics.{module}.MOST_SAMPLES", together)
+    return diagnose(signal, RATE, B6205.tones(), speed)
+
+
 def test_of_a_slow_shaft_no_more_is_held_than_the_turns_that_are_enough_and_the_lines_that_are_sought(
     monkeypatch,
 ):
-    """Long pieces take many times their memory: they are of 20 turns here; spectra end above the lines."""
-    slow = 3.0
-    signal = faulty_signal("outer", slow, RATE, 13.3, noise=0.05)
-    whole = diagnose(signal, RATE, B6205.tones(), slow)
+    """Pieces are of 20 turns here; spectra end above the lines."""
+    signal = faulty_signal("outer", SLOW, RATE, 13.3, noise=0.05)
+    whole = diagnose(signal, RATE, B6205.tones(), SLOW)
     assert whole.record.pieces == 1
+    sought = 25.0 * orders("6205")["inner"] * SLOW
     ends = [each.amplitude.size * each.step for each in (whole.record.spectrum, whole.record.white)]
-    assert all(25.0 * orders("6205")["inner"] * slow < end < 0.45 * RATE for end in ends)
-    monkeypatch.setattr("asperity.diagnostics.decision.ENOUGH", 20.0)
-    monkeypatch.setattr("asperity.diagnostics.decision.MOST_SAMPLES", 2**14)
-    in_pieces = diagnose(signal, RATE, B6205.tones(), slow)
+    assert all(sought < end < 0.45 * RATE for end in ends)
+    in_pieces = slow_record(monkeypatch, 20.0, 2**14, signal)
     assert in_pieces.record.pieces == 2
     assert in_pieces.turns == pytest.approx(20.0, rel=0.01)
     for each in (whole, in_pieces):
         assert [part.part for part in each.parts] == ["outer"]
-    monkeypatch.setattr("asperity.diagnostics.decision.MOST_SAMPLES", signal.size)
-    assert diagnose(signal, RATE, B6205.tones(), slow).record.pieces == 1
+    assert slow_record(monkeypatch, 20.0, signal.size, signal).record.pieces == 1
+
+
+@pytest.mark.parametrize("part", PARTS)
+def test_lines_of_a_slow_shaft_are_the_same_in_blocks_as_in_the_whole_record(monkeypatch, part):
+    """Each block of 1.4 s holds four turns: lines of the shaft, and of blows in the envelope of the band."""
+    signal = faulty_signal(part, SLOW, RATE, 13.3, noise=0.05)
+    whole = diagnose(signal, RATE, B6205.tones(), SLOW)
+    blocks = slow_record(monkeypatch, 100.0, 2**14, signal)
+    assert blocks.record.white.amplitude.size < whole.record.white.amplitude.size
+    assert blocks.record.limits == whole.record.limits
+    for found in (whole, blocks):
+        assert [each.part for each in found.parts] == [part]
+        assert found.speed_is == "confirmed"
+        assert found.confidence > 0.9
+        assert found.record.pieces == 1
+    for name, line in (("spectrum", SLOW), ("band", whole.parts[0].tone)):
+        views = [getattr(each.record, name) for each in (whole, blocks)]
+        heights = [each.lines_of(line)[1] / each.level for each in views]
+        np.testing.assert_allclose(*heights, rtol=0.01)
+
+
+def test_the_memory_that_a_record_takes_is_no_matter_of_how_slowly_its_shaft_turns(monkeypatch):
+    """At a tenth of a speed ten turns are ten times the samples; the record itself is given."""
+    signal = faulty_signal("outer", SLOW, RATE, 30.0, noise=0.05)
+    peaks = []
+    for speed in (3.0, 0.7, 0.3):
+        tracemalloc.start()
+        slow_record(monkeypatch, 10.0, 2**14, signal, speed)
+        peaks.append(tracemalloc.get_traced_memory()[1] / signal.nbytes)
+        tracemalloc.stop()
+    assert max(peaks) < 1.5, peaks
 
 
 def test_what_lies_above_the_lines_that_are_sought_changes_none_of_those_below():
@@ -508,6 +548,14 @@ def test_revolutions_per_minute_given_as_hertz_are_doubted_first_or_refused():
         diagnosis = diagnose(signal, rate, tones_of(file), 60.0 * speed, fastest=fastest)
         assert diagnosis.confidence <= 0.5, name
         assert diagnosis_sentence(diagnosis).startswith("Hardly any bearing of this size turns at"), name
+
+
+def test_a_line_of_the_shaft_one_place_beside_its_own_does_not_contradict_the_speed():
+    """Of 3 s at 8 Hz places are 1/6 Hz apart: 47/6 Hz was "not at 8 Hz, as told", 97 % sure."""
+    places = np.arange(1, 200) / 6.0
+    told = places[20:]
+    assert all(_agrees(beside, speed, 1.0 / 3.0) for beside, speed in zip(places[19:], told, strict=False))
+    assert not any(_agrees(beside, speed, 1.0 / 3.0) for beside, speed in zip(places, told[:20], strict=False))
 
 
 def test_a_record_sampled_too_slowly_for_the_blows_is_no_sound_bearing():

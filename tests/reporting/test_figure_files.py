@@ -12,6 +12,7 @@ from asperity.reporting.figure import PageFigure, chosen_figures, write_chart, w
 from asperity.reporting.panels import frequency_axis, wavenumber_axis, words_axis
 from asperity.reporting.paper import draw, save_figure
 from asperity.reporting.texture_figures import height_scale, lines_chart, surface_chart
+from asperity.surfaces.statistics import known_heights
 from refusals import refusals
 
 X = np.array([0.0, 1.0, 2.0])
@@ -117,7 +118,8 @@ def test_a_surface_is_drawn(heights, spacing, tmp_path):
     if heights.size > 2000:  # drawn from the normal distribution
         normal = chart.panels[1].marks[-1]
         assert np.trapezoid(normal.y, normal.x) == pytest.approx(1.0, abs=0.01)
-    reached = chart.panels[2].marks[0].y[[0, -1]] * height_scale(heights)[0]  # by none, and by all
+    unit, *_ = height_scale(known_heights([heights]))
+    reached = unit * chart.panels[2].marks[0].y[[0, -1]]  # by none, and by all
     assert reached == pytest.approx([np.nanmax(heights), np.nanmin(heights)])
 
 

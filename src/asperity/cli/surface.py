@@ -16,7 +16,7 @@ from asperity.errors import InputError, percent
 from asperity.files import write_bytes
 from asperity.parameters import Origin
 from asperity.reporting.figure import write_chart
-from asperity.reporting.texture_figures import lines_chart, side_by_side, surface_chart
+from asperity.reporting.texture_figures import lines_chart, surface_chart
 from asperity.spectra import nominal
 from asperity.surfaces import cleaning, likeness, statistics
 from asperity.surfaces.heightmap import HeightMap, Profile
@@ -161,20 +161,20 @@ def _show(
     if slopes := [symbol for symbol in unknown if symbol[1:] in ("dq", "dr")]:
         say(f"No {' and no '.join(slopes)}: slopes by ISO 4287 take {SLOPE_POINTS} points in a row.")
     homogeneous = _homogeneity(first)
+    numbers = _numbers([each.heights for each in lines or levelled[:1]], octaves)
     write_chart(chart, title, picture)
     if isinstance(first, HeightMap) and spectra and psd:
         spectra[AREAL] = psd_radial(cleaning.nearly_complete(first) or first)
-    heights = side_by_side([each.heights for each in lines or levelled[:1]])
     rows = [asdict(item) | ({"lowest": low, "highest": high} if beside else {}) for item, low, high in items]
-    return {"statistics": rows, "homogeneity": homogeneous} | _numbers(heights, octaves), spectra
+    return {"statistics": rows, "homogeneity": homogeneous} | numbers, spectra
 
 
-def _numbers(heights: Array, octaves: ThirdOctaves | None) -> dict[str, Any]:
+def _numbers(heights: Sequence[Array], octaves: ThirdOctaves | None) -> dict[str, Any]:
     """The material ratio curve, shares of points and heights, m, that they reach; and one-third octaves."""
     names = ("wavelength", "limit", "measured", "processed")
     bands = octaves and {name: getattr(octaves, name)[octaves.limited] for name in names}
-    curve = dict(zip(("ratio", "height"), statistics.material_ratio_curve(heights), strict=True))
-    return {"material_ratio": curve, "third_octaves": bands}
+    ratio, height = statistics.material_ratio_curve(statistics.known_heights(heights))
+    return {"material_ratio": {"ratio": ratio, "height": height}, "third_octaves": bands}
 
 
 def _spectra_of_map(surface: HeightMap) -> Spectra:

@@ -13,7 +13,7 @@ from asperity.diagnostics.envelopes import above_frequency
 from asperity.diagnostics.hypotheses import FINE, NEAR, RANGE, TURNED, BearingRecord, Hypothesis, Tone
 from asperity.diagnostics.kurtogram import Kurtogram, kurtogram
 from asperity.diagnostics.prominence import HARMONICS, LOWEST_PLACE
-from asperity.diagnostics.recording import Recording, SignalPieces
+from asperity.diagnostics.recording import MOST_SAMPLES, Recording, SignalPieces
 from asperity.progress import Progress, counted
 from asperity.written_numbers import rounded
 
@@ -41,9 +41,7 @@ EVEN = 0.5
 LONGEST = 500.0
 """Turns of a piece of a record: blows that slip have wide lines in longer ones."""
 ENOUGH = 100.0
-"""Turns of a piece that is no longer than it must be, …"""
-MOST_SAMPLES = 2**20
-"""… as one of more samples is where a shaft turns slowly: it takes some twenty times their memory."""
+"""Turns of a piece that is no longer than it must be."""
 LEAST_DEPTH = {"stands": 0.25, "turns": 0.15}
 """Share by which the envelope follows the blows of a fault: balls that pass a sound ring that stands in the
 load make it rise and fall, too, by 0.19 at most in the records of sound bearings that were looked at."""
@@ -256,8 +254,8 @@ def diagnose_together(
     reached = HARMONICS * tone.order * told
     seen = Kurtogram.mean(_kurtograms(pieces, rate, reached, progress))
     limits = band or _ringing_band(seen, rate, reached)
-    highest = HUM + TURNED * RANGE * told * max(1.0, *(each.highest for each in tones.values()))
-    record = BearingRecord.of(pieces, rate, seen, limits, highest, progress)
+    sought = TURNED * RANGE * told * max(1.0, *(each.highest for each in tones.values()))
+    record = BearingRecord.of(pieces, rate, seen, limits, sought, HUM, progress)
     found = decided(record, record.read(tones, told), tones, told)
     doubts = dict.fromkeys(each for recording in recordings for each in recording.doubts)
     return replace(found, doubts=tuple(doubts), fastest=fastest, element=element)
@@ -271,13 +269,13 @@ def _longest_piece(samples_of_turn: float) -> float:
 def _kurtograms(
     pieces: SignalPieces, rate: float, reached: float, progress: Progress | None
 ) -> Iterator[Kurtogram]:
-    """Kurtogram of each piece above the lines that an envelope shall show, up to a frequency, Hz.
+    """Kurtogram of each block of pieces above the lines that an envelope shall show, up to a frequency, Hz.
 
     Below lie the shaft's own lines, hum and the tone of balls that pass the load: each beats with the others.
     """
     above = _above(reached, rate)
-    for piece in counted(pieces, len(pieces), "kurtogram", progress):
-        yield kurtogram(above_frequency(piece, rate, above), rate, reached)
+    for block in counted(pieces.blocks(), pieces.block_count, "kurtogram", progress):
+        yield kurtogram(above_frequency(block, rate, above), rate, reached)
 
 
 def _above(reached: float, rate: float) -> float:

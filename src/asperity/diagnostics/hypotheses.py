@@ -1,13 +1,13 @@
 """What the lines of a record may mean: which part is struck, at which speed, and what the shaft says of
 it."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from asperity.arguments import Array
-from asperity.diagnostics.envelopes import mean_spectrum, prewhitened
+from asperity.diagnostics.envelopes import analytic_signal, mean_spectrum, prewhitened
 from asperity.diagnostics.kurtogram import Kurtogram
 from asperity.diagnostics.lines import STANDS_OUT
 from asperity.diagnostics.prominence import LOWEST_PLACE, Prominence
@@ -142,21 +142,38 @@ class BearingRecord:
         rate: float,
         kurtogram: Kurtogram,
         limits: tuple[float, float],
-        highest: float = np.inf,
+        sought: float = np.inf,
+        beyond: float = 0.0,
         progress: Progress | None = None,
     ) -> "BearingRecord":
         """Pieces of a record at a sampling rate, Hz, their kurtogram, the band of the second envelope, and
         the highest frequency, Hz, at which lines are looked for: of a shaft that turns slowly a small part of
-        what long pieces hold."""
-        views = "spectrum", "envelope of the whitened signal", "envelope of the band"
-        plain, loud, ringing = (counted(pieces, len(pieces), view, progress) for view in views)
-        levels = ((each, float(each.std())) for each in plain)
-        white = (prewhitened(each, rate) for each in loud)
+        what long pieces hold. Of others what lies so far beyond is kept, too."""
+        step = pieces.step(rate, sought)
+        highest = sought + beyond if step == 1 else sought
+
+        def white(block: Array) -> Array:
+            level = 1.0 if step == 1 else float(block.std())  # a loud block stays louder than others
+            return np.abs(analytic_signal(level * prewhitened(block, rate), rate, 0.0, 0.5 * rate))
+
+        def ringing(block: Array) -> Array:
+            return np.abs(analytic_signal(block, rate, *limits))
+
+        def seen(view: Callable[[Array], Array], what: str) -> Iterator[Array]:
+            return counted(pieces.seen(view, step), len(pieces), what, progress)
+
+        plain = ((each, float(each.std())) for each in seen(np.asarray, "spectrum"))
+        spectrum, _ = mean_spectrum(plain, rate / step)
+
+        def stands_out(view: Callable[[Array], Array], width: float, name: str) -> Prominence:
+            envelopes = seen(view, f"envelope of the {name}")
+            return Prominence.of_envelopes(envelopes, rate / step, width, len(pieces), highest)
+
         return cls(
             duration=pieces.size / rate,
-            spectrum=Prominence.of(mean_spectrum(levels, rate)[0], means=len(pieces), highest=highest),
-            white=Prominence.of_envelopes(white, rate, (0.0, 0.5 * rate), len(pieces), highest),
-            band=Prominence.of_envelopes(ringing, rate, limits, len(pieces), highest),
+            spectrum=Prominence.of(spectrum, means=len(pieces), highest=highest),
+            white=stands_out(white, 0.5 * rate, "whitened signal"),
+            band=stands_out(ringing, limits[1] - limits[0], "band"),
             kurtogram=kurtogram,
             limits=limits,
             pieces=len(pieces),

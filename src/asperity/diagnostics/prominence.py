@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.arguments import Array
-from asperity.diagnostics.envelopes import Spectrum, analytic_signal, mean_spectrum
+from asperity.diagnostics.envelopes import Spectrum, mean_spectrum
 from asperity.diagnostics.lines import AROUND, COUNTED, FEWEST, STANDS_OUT, WITHIN
 
 HARMONICS = 5
@@ -95,18 +95,17 @@ class Prominence:
     @classmethod
     def of_envelopes(
         cls,
-        signals: Iterable[Array],
+        envelopes: Iterable[Array],
         rate: float,
-        band: tuple[float, float],
+        width: float,
         means: int = 1,
         highest: float = np.inf,
     ) -> "Prominence":
-        """How far lines in the mean of so many envelopes, of signals of one length in a band, Hz, stand out,
+        """How far lines in the mean of so many envelopes, of one length and a band of a width, Hz, stand out,
         up to a highest frequency, Hz."""
-        envelopes = (np.abs(analytic_signal(signal, rate, *band)) for signal in signals)
         levelled = ((each, float(each.mean())) for each in envelopes)
         (frequency, amplitude), level = mean_spectrum(levelled, rate)
-        held = frequency <= band[1] - band[0]
+        held = frequency <= width
         return cls.of((frequency[held], amplitude[held]), level, means, highest)
 
     @property

@@ -1,13 +1,14 @@
 """What is wrong with a recording, whatever it was of: samples that are missing, stand still, are clipped."""
 
-from collections.abc import Iterator, Sequence
+import math
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from asperity.arguments import Array, ArrayLike, positive, real_array, require
-from asperity.spectra import quick_length
+from asperity.spectra import hann_window, quick_length
 from asperity.written_numbers import count_of, rounded
 
 Mask = NDArray[np.bool_]
@@ -24,6 +25,10 @@ BELOW = 1e-2
 """… and those in the next share, which are fewer by …"""
 FEWER = 4.0
 """… this factor at least: what nothing clips thins out towards its ends."""
+MOST_SAMPLES = 2**19
+"""Samples of a signal that are transformed together: it takes some twenty times their memory."""
+WIDER = 1.25
+"""Band of what is kept of a long piece, over the lines that are sought: medians are taken around them."""
 SLOW = 2**18
 """Samples of a piece from which on it is cut to a length that is quick to transform."""
 OFFSET = 1.0
@@ -123,7 +128,54 @@ class SignalPieces:
 
     def __iter__(self) -> Iterator[Array]:
         """Return one after the other, (n,), without their means."""
-        return (np.clip(samples - mean, -reached, reached) for samples, mean, reached in self.cut)
+        return (_limited(*each) for each in self.cut)
+
+    def step(self, rate: float, highest: float) -> int:
+        """Of how many samples at a rate, Hz, one is kept of long pieces, which holds lines up to a frequency,
+        Hz."""
+        return 1 if self.size <= MOST_SAMPLES else max(int(0.5 * rate / (WIDER * highest)), 1)
+
+    @property
+    def block_count(self) -> int:
+        """How many blocks there are in all."""
+        return len(self) * math.ceil(self.size / MOST_SAMPLES)
+
+    def blocks(self) -> Iterator[Array]:
+        """Return what is transformed together, one after the other: pieces, or equal parts of long ones."""
+        count = self.block_count // len(self)
+        size = self.size // count
+        parts = (slice(n * size, (n + 1) * size) for n in range(count))
+        return (_limited(samples[part], *rest) for part in parts for samples, *rest in self.cut)
+
+    def seen(self, view: Callable[[Array], Array], step: int) -> Iterator[Array]:
+        """Return what a view (n,) -> (n,) makes of each, at one of so many samples: 1 for all of them.
+
+        Of more than one it is made in blocks, each faded into the next by squared sines, without what is
+        faster than the samples that are kept: how many turns a long piece has is no matter of memory.
+        """
+        for each in self.cut:
+            yield view(_limited(*each)) if step == 1 else _thinned(*each, view, step)
+
+
+def _limited(samples: Array, mean: float, reached: float) -> Array:
+    """Samples less a mean, within a size."""
+    return np.clip(samples - mean, -reached, reached)
+
+
+def _thinned(samples: Array, mean: float, reached: float, view: Callable[[Array], Array], step: int) -> Array:
+    """What a view makes of samples (n,), at one of so many of them, as `SignalPieces.seen` has it."""
+    from scipy.fft import irfft, rfft
+
+    halves = max(math.ceil(2 * samples.size / MOST_SAMPLES), 2)
+    half = quick_length(samples.size // halves // step)
+    fading = hann_window(2 * half, centred=True)
+    total, weight = np.zeros((2, halves * half))
+    for first in range(0, (halves - 1) * half, half):
+        block = _limited(samples[first * step : (first + 2 * half) * step], mean, reached)
+        kept = slice(first, first + 2 * half)
+        total[kept] += fading * irfft(rfft(view(block))[: half + 1], 2 * half)
+        weight[kept] += fading
+    return np.asarray(total / (weight * step))
 
 
 def _reached(values: Array, mean: float, times: int) -> float:
@@ -159,6 +211,17 @@ def _runs(held: Mask) -> NDArray[np.intp]:
     return np.concatenate([first, edges, last]).astype(np.intp).reshape(-1, 2)
 
 
+def _begins_run(held: Mask, length: int) -> Mask:
+    """Where a condition (n,) is held by so many in a row: most records have none, and millions of short
+    runs."""
+    done = 1
+    while done < length and held.any():
+        by = min(done, length - done)
+        held = held[: held.size - by] & held[by:]
+        done += by
+    return held if done >= length else np.zeros(1, dtype=bool)
+
+
 def _between(left_out: Mask, values: Array) -> list[Array]:
     """Stretches of values that are not left out."""
     return [values[first:last] for first, last in _runs(~left_out)]
@@ -187,10 +250,9 @@ def _bridged(values: Array) -> tuple[Array, Mask, str]:
 def _stands_still(values: Array, rate: float, still: float) -> tuple[Mask, str]:
     """Where values do not move for so long, s, and what is told of that."""
     stuck = np.zeros(values.size, dtype=bool)
-    least = max(still * rate, FEWEST)
-    runs = _runs(values[1:] == values[:-1])
-    runs[:, 1] += 1  # the one that is like the one before it
-    runs = runs[runs[:, 1] - runs[:, 0] >= least]
+    least = math.ceil(max(still * rate, FEWEST)) - 1 if still < values.size / rate else values.size
+    runs = _runs(_begins_run(values[1:] == values[:-1], least))
+    runs[:, 1] += least  # the last of them, which is like the one before it
     for first, last in runs:
         stuck[first:last] = True
     if not len(runs):

@@ -16,6 +16,8 @@ FREQUENCY, TIME = "frequency", "time"
 """Quantities by which axes are linked: a cursor on one stands on all."""
 WIDE = 9.6
 """Inches: a figure as wide as the page."""
+SEEN = 1024
+"""Numbers along a side of a field, about, that are drawn of more: no panel has as many dots."""
 INK = "#1c2126"
 MUTED = "#5b6670"
 GRID = "#dfe3e7"
@@ -90,6 +92,20 @@ def envelope(signal: Numbers, columns: int) -> tuple[NDArray[np.int64], Numbers,
         np.linspace(0, len(signal), min(columns, len(signal)), endpoint=False).astype(np.int64)
     )
     return starts, np.fmin.reduceat(signal, starts), np.fmax.reduceat(signal, starts)
+
+
+def as_seen(values: Numbers) -> tuple[Numbers, tuple[float, float]]:
+    """Numbers (nx, ny) as means over blocks where more are held than a picture has dots, and the share of
+    either side that they cover."""
+    blocks = [max(1, round(n / SEEN)) for n in values.shape]
+    if max(blocks) == 1:
+        return values, (1.0, 1.0)
+    nx, ny = (n // block * block for n, block in zip(values.shape, blocks, strict=True))
+    within = values[:nx, :ny].reshape(nx // blocks[0], blocks[0], ny // blocks[1], blocks[1])
+    known = np.isfinite(within).sum(axis=(1, 3))
+    total = np.nansum(within, axis=(1, 3))
+    means = np.divide(total, known, out=np.full(known.shape, np.nan), where=known > 0)
+    return means, (nx / values.shape[0], ny / values.shape[1])
 
 
 def smooth_on_log_axis(frequency: Numbers, psd: Numbers, per_octave: int = 24) -> tuple[Numbers, Numbers]:

@@ -52,8 +52,6 @@ LETTER, ROW, HANDLE = 0.068, 13.0, 10
 OPPOSITE = 32.0
 """Points that an axis opposite takes above a panel."""
 HATCHES = {"/": "///", "\\": "\\\\\\", "x": "xxx", ".": "..", "-": "---"}
-SEEN = 1024
-"""Numbers along a side of a field, at least, that are drawn of more: no panel has as many dots."""
 MARGIN = 0.04
 """Share of the height of a panel that is left free above and below its marks."""
 Ends = tuple[float, float]
@@ -253,24 +251,10 @@ def _write_note(axes: Axes, note: chart.Note) -> None:
     )
 
 
-def as_seen(values: chart.Numbers) -> tuple[chart.Numbers, tuple[float, float]]:
-    """Numbers (nx, ny) as means over blocks where more are held than a picture has dots, and the share of
-    either side that they cover."""
-    blocks = [max(1, n // SEEN) for n in values.shape]
-    if max(blocks) == 1:
-        return values, (1.0, 1.0)
-    nx, ny = (n // block * block for n, block in zip(values.shape, blocks, strict=True))
-    within = values[:nx, :ny].reshape(nx // blocks[0], blocks[0], ny // blocks[1], blocks[1])
-    known = np.isfinite(within).sum(axis=(1, 3))
-    total = np.nansum(within, axis=(1, 3))
-    means = np.divide(total, known, out=np.full(known.shape, np.nan), where=known > 0)
-    return means, (nx / values.shape[0], ny / values.shape[1])
-
-
 def _draw_field(axes: Axes, mark: chart.Field, width: float) -> None:
     """Draw numbers as colours, with their scale."""
     look: dict[str, Any] = {"cmap": mark.colours, "vmin": mark.low, "vmax": mark.high, "zorder": 0.3}
-    values, (right, top) = as_seen(mark.values)
+    values, (right, top) = chart.as_seen(mark.values)
     x, y = ((low, low + share * (high - low)) for (low, high), share in ((mark.x, right), (mark.y, top)))
     image = axes.imshow(values.T, origin="lower", extent=(*x, *y), aspect="auto", **look)
     axes.set(xlim=mark.x, ylim=mark.y)

@@ -26,7 +26,7 @@ from asperity.reporting.figure import Lines, Of, field, figure
 from asperity.schema import contact
 from asperity.spectra import nominal
 from asperity.surfaces.measured_lines import ThirdOctaves
-from asperity.surfaces.statistics import material_ratio_curve
+from asperity.surfaces.statistics import known_heights, material_ratio_curve
 from asperity.written_numbers import rounded
 
 SLENDER = 2.5
@@ -67,11 +67,13 @@ def _edges(points: Numbers, size: float) -> tuple[float, float]:
     return float(points[0] - half) / size, float(points[-1] + half) / size
 
 
-def height_scale(heights: Numbers) -> tuple[float, str, float, float]:
-    """Unit of heights and its symbol; limits in it about the mean that leave out 0.1 % at either end."""
-    finite = heights[np.isfinite(heights)]
-    middle = finite.mean()
-    ends = np.percentile(finite, [0.1, 99.9], overwrite_input=True)
+def height_scale(known: Numbers) -> tuple[float, str, float, float]:
+    """Unit of heights and its symbol; limits in it about the mean that leave out 0.1 % at either end.
+
+    Of `known_heights`, whose order changes.
+    """
+    middle = known.mean()
+    ends = np.percentile(known, [0.1, 99.9], overwrite_input=True)
     reach = np.abs(ends - middle).max() or 1e-9
     size, symbol = length_unit(reach)
     return size, symbol, float(middle - reach) / size, float(middle + reach) / size
@@ -79,20 +81,19 @@ def height_scale(heights: Numbers) -> tuple[float, str, float, float]:
 
 def height_map(x: Numbers, y: Numbers, heights: Numbers, **place: Any) -> Panel:
     """Heights (nx, ny) in m from above."""
-    size, symbol, low, high = height_scale(heights)
+    size, symbol, low, high = height_scale(known_heights([heights]))
     return map_panel(x, y, heights / size, (f"height / {symbol}", low, high), **place)
 
 
-def distribution(heights: Numbers) -> tuple[Numbers, Numbers]:
-    """Distribution of heights, m: edges of bins, and density in them, 1/m; missing points are left out."""
-    finite = heights[np.isfinite(heights)]
-    bins = int(np.clip(2 * len(finite) ** (1 / 3), 10, 80))  # Rice's rule
-    low = finite.min()
-    high = finite.max()
+def distribution(known: Numbers) -> tuple[Numbers, Numbers]:
+    """Distribution of heights (n,), m: edges of bins, and density in them, 1/m."""
+    bins = int(np.clip(2 * len(known) ** (1 / 3), 10, 80))  # Rice's rule
+    low = known.min()
+    high = known.max()
     if low == high:
         low = low - 0.5e-9
         high = high + 0.5e-9
-    density, edges = np.histogram(finite, bins=bins, range=(low, high), density=True)
+    density, edges = np.histogram(known, bins=bins, range=(low, high), density=True)
     return edges, density
 
 
@@ -156,12 +157,11 @@ def texture_sample(tree: DataTree, lines: Lines) -> Drawn:
     if not np.nanmax(np.abs(heights)) > 0:
         return
     slender = bool(np.ptp(x) > SLENDER * np.ptp(y))  # then the heights stand below the map
-    named = {"sample": distribution(heights)}
+    known = known_heights([heights])
+    named = {"sample": distribution(known)}
     height, below = (1.9, 2.7) if slender else (4.2, 4.2)
     yield height_map(x, y, heights, title="first sample" + _between(tree), height=height, share=1.25)
-    yield height_histogram(
-        named, height_scale(heights)[:2], title="heights", height=below, beside=not slender
-    )
+    yield height_histogram(named, height_scale(known)[:2], title="heights", height=below, beside=not slender)
     missing = data.number(tree, contact.MISSING_SHARE)
     gaps = f"; {rounded(100 * missing)} % of its points had no height" if missing else ""
     yield (
@@ -274,9 +274,11 @@ def surface_chart(heights: Numbers, spacing: tuple[float, float], spectra: Named
     length = np.asarray(heights.shape, dtype=np.float64) * spacing
     slender = bool(length[0] > SLENDER * length[1])
     equal = bool(max(length) <= 12 * min(length))
-    x, y = (step * np.arange(n, dtype=np.float64) for n, step in zip(heights.shape, spacing, strict=True))
-    above = height_map(x, y, heights, equal=equal, height=1.9 if slender else 4.2, share=1.25)
-    return _with_statistics(above, heights, spectra, None, beside=not slender)
+    seen, shares = chart.as_seen(heights)
+    steps = length * shares / seen.shape
+    x, y = (step * np.arange(n, dtype=np.float64) for n, step in zip(seen.shape, steps, strict=True))
+    above = height_map(x, y, seen, equal=equal, height=1.9 if slender else 4.2, share=1.25)
+    return _with_statistics(above, known_heights([heights]), spectra, None, beside=not slender)
 
 
 def lines_chart(
@@ -286,29 +288,25 @@ def lines_chart(
 
     Levelled heights (n,) and the distance of points along the lines, m, positive out of the material.
     """
-    above = _lines_panel(lines, spacing)
-    return _with_statistics(above, side_by_side(lines), spectra, octaves, beside=True)
-
-
-def side_by_side(lines: Sequence[Numbers]) -> Numbers:
-    """Heights of lines, one line behind the other."""
-    return np.concatenate(lines) if len(lines) > 1 else lines[0]
+    known = known_heights(lines)
+    above = _lines_panel(lines, spacing, known)
+    return _with_statistics(above, known, spectra, octaves, beside=True)
 
 
 def _with_statistics(
-    above: Panel, heights: Numbers, spectra: NamedSpectra, octaves: ThirdOctaves | None, *, beside: bool
+    above: Panel, known: Numbers, spectra: NamedSpectra, octaves: ThirdOctaves | None, *, beside: bool
 ) -> Chart:
     """What heights look like, and how often each occurs, beside it or below, and their spectra."""
-    unit = height_scale(heights)[:2]
-    named = {"heights": distribution(heights)}
+    unit = height_scale(known)[:2]
+    named = {"heights": distribution(known)}
     histogram = height_histogram(named, unit, height=above.height if beside else 2.7, beside=beside)
-    ratio = _ratio_panel(heights, unit, beside=not beside, height=3.2 if beside else 2.7)
+    ratio = _ratio_panel(known, unit, beside=not beside, height=3.2 if beside else 2.7)
     return Chart((above, histogram, ratio, *_spectra_panels(spectra, octaves, beside=beside)))
 
 
-def _ratio_panel(heights: Numbers, unit: tuple[float, str], **place: Any) -> Panel:
+def _ratio_panel(known: Numbers, unit: tuple[float, str], **place: Any) -> Panel:
     """Share of the points that reach a height."""
-    ratio, height = material_ratio_curve(heights)
+    ratio, height = material_ratio_curve(known)
     curve = Line(100.0 * ratio, height / unit[0], colour=VERMILLION)
     return Panel(Axis("material ratio / %", 0.0, 100.0), Axis(f"height / {unit[1]}"), (curve,), **place)
 
@@ -344,11 +342,10 @@ def _octaves_panel(octaves: ThirdOctaves, **place: Any) -> Panel:
     return Panel(along, Axis("roughness / dB re 1 µm"), tuple(marks), title=title, **place)
 
 
-def _lines_panel(lines: Sequence[Numbers], spacing: float) -> Panel:
+def _lines_panel(lines: Sequence[Numbers], spacing: float, known: Numbers) -> Panel:
     """Lines below each other, and a bar that says how high they are drawn."""
-    heights = side_by_side(lines)
-    size, symbol = height_scale(heights)[:2]
-    ends = np.percentile(heights[np.isfinite(heights)], [0.1, 99.9], overwrite_input=True)
+    size, symbol = height_scale(known)[:2]
+    ends = np.percentile(known, [0.1, 99.9], overwrite_input=True)
     reach = float(np.ptp(ends)) / size or 1.0
     along, along_symbol = length_unit(longest := max(map(len, lines)) * spacing)
     end = longest / along

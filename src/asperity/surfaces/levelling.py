@@ -117,23 +117,33 @@ def resample(surface: S, spacing: float | tuple[float, float]) -> S:
 
 
 def _resample_axis(heights: Array, old_step: float, new_step: float, axis: int) -> Array:
-    points = heights.shape[axis]
+    turned = np.moveaxis(heights, axis, -1)
+    lines = turned.reshape(-1, heights.shape[axis])
+    together = max(1, PIECE // lines.shape[1])  # a large map is not held many times
+    pieces = (lines[first : first + together] for first in range(0, len(lines), together))
+    resampled = np.concatenate([_resampled(piece, old_step, new_step) for piece in pieces])
+    return np.moveaxis(resampled.reshape(*turned.shape[:-1], -1), -1, axis)
+
+
+def _resampled(lines: Array, old_step: float, new_step: float) -> Array:
+    """Lines (k, n) at another step along them."""
+    points = lines.shape[1]
     length = points * old_step
     count = int(np.floor(length / new_step + 1e-9))
-    series = np.moveaxis(scipy.fft.dct(heights, type=2, axis=axis), axis, -1)
+    series = scipy.fft.dct(lines, type=2)
     terms = min(points, count)  # term k has the wavelength 2 length/k
     # four samples or more per shortest wavelength left: the quintic spline is then right within 0.2 %
     dense = scipy.fft.next_fast_len(max(2 * terms, 16), real=True)
-    padded = np.zeros((*series.shape[:-1], dense))
-    padded[..., :terms] = series[..., :terms] * (dense / points)
-    values = scipy.fft.idct(padded, type=2, axis=-1)
+    padded = np.zeros((len(lines), dense))
+    padded[:, :terms] = series[:, :terms] * (dense / points)
+    values = scipy.fft.idct(padded, type=2)
     centres = (np.arange(dense) + 0.5) * (length / dense)
     before = slice(MIRRORED - 1, None, -1)
     beyond = slice(None, -MIRRORED - 1, -1)
-    mirrored = np.concatenate([values[..., before], values, values[..., beyond]], axis=-1)
+    mirrored = np.concatenate([values[:, before], values, values[:, beyond]], axis=-1)
     positions = np.concatenate([-centres[before], centres, 2 * length - centres[beyond]])
     spline = scipy.interpolate.make_interp_spline(positions, mirrored, k=5, axis=-1)
-    return np.moveaxis(spline((np.arange(count) + 0.5) * new_step), -1, axis)
+    return np.asarray(spline((np.arange(count) + 0.5) * new_step))
 
 
 def without_polynomial(heights: Array, degree: int, *, into: Array | None = None) -> Array:

@@ -12,7 +12,7 @@ from asperity.spectra import hann_window, psd
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.threads import thread_count
 
-PIECE = 2**20
+PIECE = 2**18
 """Points of a map, or of its spectrum, that are looked at in one go."""
 
 
@@ -34,12 +34,6 @@ def _pieces(shape: tuple[int, int]) -> Iterator[slice]:
     return (slice(first, first + rows) for first in range(0, shape[0], rows))
 
 
-def _complete(surface: HeightMap | Profile) -> Array:
-    """Heights about their mean."""
-    _require_complete(surface)
-    return surface.heights - surface.heights.mean()
-
-
 def _require_complete(surface: HeightMap | Profile) -> None:
     received = f"{surface.missing_share:.2%} missing points"
     allowed = "complete heights for a spectrum"
@@ -52,21 +46,32 @@ def psd_2d(surface: HeightMap) -> tuple[Array, Array, Array]:
     The heights are complete and levelled, m; the mean is removed. The double integral is Sq², weighted by the
     squared Hann window.
     """
-    z, (dx, dy) = _complete(surface), surface.spacing
-    weights = np.outer(*map(hann_window, z.shape))
-    z *= weights  # in place, here and below: maps may be large
-    energy = float(np.sum(np.square(weights, out=weights)))
-    del weights
-    lines = fft.fft2(z)
-    del z
-    density = np.abs(lines)
-    del lines
-    np.square(density, out=density)
-    density = fft.fftshift(density)
-    density *= dx * dy / (4.0 * np.pi**2 * energy)
-    steps = zip(density.shape, (dx, dy), strict=True)
-    qx, qy = (2.0 * np.pi * fft.fftshift(fft.fftfreq(n, d)) for n, d in steps)
-    return qx, qy, density
+    qx, _, half = _half_plane(surface)
+    (nx, ny), (_, dy) = surface.shape, surface.spacing
+    density = np.empty((nx, ny))
+    density[:, : ny // 2 + 1] = half
+    density[:, ny // 2 + 1 :] = half[-np.arange(nx) % nx, (ny - 1) // 2 : 0 : -1]  # the same at −q
+    del half
+    qy = 2.0 * np.pi * fft.fftfreq(ny, dy)
+    return fft.fftshift(qx), fft.fftshift(qy), fft.fftshift(density)
+
+
+def _half_plane(surface: HeightMap) -> tuple[Array, Array, Array]:
+    """Spectrum of `psd_2d` where qy is not below zero, with qx in the order of transforms."""
+    _require_complete(surface)
+    (nx, ny), (dx, dy) = surface.shape, surface.spacing
+    along, across = hann_window(nx), hann_window(ny)
+    mean = surface.heights.mean()
+    lines = np.empty((nx, ny // 2 + 1), dtype=np.complex128)
+    for rows in _pieces(surface.shape):
+        lines[rows] = fft.rfft((surface.heights[rows] - mean) * along[rows, None] * across)
+    lines = fft.fft(lines, axis=0, overwrite_x=True)  # in place, here and below: maps may be large
+    np.square(lines.real, out=lines.real)
+    np.square(lines.imag, out=lines.imag)
+    lines.real += lines.imag
+    energy = np.square(along).sum() * np.square(across).sum()
+    lines.real *= dx * dy / (4.0 * np.pi**2 * energy)
+    return 2.0 * np.pi * fft.fftfreq(nx, dx), 2.0 * np.pi * fft.rfftfreq(ny, dy), lines.real
 
 
 def psd_radial(surface: HeightMap) -> tuple[Array, Array]:
@@ -76,16 +81,24 @@ def psd_radial(surface: HeightMap) -> tuple[Array, Array]:
     two wavenumber steps, up to the largest that both directions reach. For an isotropic surface 2π ∫ C q dq =
     Sq².
     """
-    qx, qy, density = psd_2d(surface)
-    q, step = np.hypot(qx[:, None], qy[None, :]), max(qx[1] - qx[0], qy[1] - qy[0])
-    rings = int(min(-qx[0], -qy[0]) / step)
-    index = np.rint(q / step).astype(np.intp)
-    inside = (index >= 1) & (index <= rings)
-    count, total, radius = (
-        np.bincount(index[inside], weights, minlength=rings + 1)[1:]
-        for weights in (None, density[inside], q[inside])
-    )
+    qx, qy, density = _half_plane(surface)
+    step = max(qx[1], qy[1])
+    rings = int(min(-qx.min(), qy[-1]) / step)
+    sums = np.zeros((3, rings + 1))
+    for rows in _pieces(surface.shape):
+        q = np.hypot(qx[rows, None], qy)
+        index = np.rint(q / step).astype(np.intp)
+        inside = index <= rings
+        often = np.broadcast_to(_times_held(qy, surface.shape[1]), q.shape)[inside]
+        values = 1.0, density[rows][inside], q[inside]
+        sums += [np.bincount(index[inside], often * each, minlength=rings + 1) for each in values]
+    count, total, radius = sums[:, 1:]
     return radius / count, total / count
+
+
+def _times_held(qy: Array, columns: int) -> Array:
+    """How often what stands at each qy (f,) of a half plane does so in the whole plane, at q and at −q."""
+    return np.where((qy > 0.0) & (np.arange(qy.size) < 0.5 * columns), 2.0, 1.0)
 
 
 def texture_direction(surface: HeightMap) -> float:
@@ -98,14 +111,15 @@ def texture_direction(surface: HeightMap) -> float:
     over ±15°. Of heights it would be decided by the few waves that are nearly as long as the map, each with
     a power that is chance.
     """
-    qx, qy, density = psd_2d(surface)
+    qx, qy, density = _half_plane(surface)
+    often = _times_held(qy, surface.shape[1])
     power = np.zeros(180)
-    for rows in _pieces(density.shape):
+    for rows in _pieces(surface.shape):
         q = np.hypot(qx[rows, None], qy[None, :])
         angle = np.arctan2(qy[None, :], qx[rows, None]) % np.pi
-        inside = (q >= 3.0 * max(qx[1] - qx[0], qy[1] - qy[0])) & (q <= min(-qx[0], -qy[0]))
+        inside = (q >= 3.0 * max(qx[1], qy[1])) & (q <= min(-qx.min(), qy[-1]))
         degrees = np.rint(np.degrees(angle[inside])).astype(np.intp) % 180
-        power += np.bincount(degrees, (q**2 * density[rows])[inside], minlength=180)
+        power += np.bincount(degrees, (often * q**2 * density[rows])[inside], minlength=180)
     smooth = power
     for _ in range(2):
         smooth = scipy.ndimage.uniform_filter1d(smooth, 31, mode="wrap")
@@ -117,6 +131,8 @@ def texture_direction(surface: HeightMap) -> float:
 
 CORRELATION_THRESHOLD = 0.2
 """Default of ISO 25178-3 for Sal and Str."""
+APART = 32
+"""Points beyond which a spline feels nothing of where it ends: each takes three quarters off."""
 
 
 def autocorrelation(surface: HeightMap) -> Array:
@@ -125,10 +141,13 @@ def autocorrelation(surface: HeightMap) -> Array:
     Of shape (2 (nx//2) + 1, 2 (ny//2) + 1). The heights are complete; the mean is removed. ISO 25178-2:2021
     (autocorrelation function).
     """
-    z = _complete(surface)
-    require(z.any(), "surface", "equal heights everywhere", "a surface with roughness")
-    mean = lag_products(z, len(z) // 2) / lag_pairs(len(z), z.shape[1], len(z) // 2)
-    return mean / mean[len(z) // 2, z.shape[1] // 2]
+    _require_complete(surface)
+    heights, (nx, ny) = surface.heights, surface.shape
+    require(np.ptp(heights), "surface", "equal heights everywhere", "a surface with roughness")
+    found = lag_products(heights, nx // 2, float(heights.mean()))
+    found /= lag_pairs(nx, ny, nx // 2)
+    found /= found[nx // 2, ny // 2]
+    return found
 
 
 def lag_pairs(rows: int, columns: int, reach: int, pieces: int = 1) -> Array:
@@ -137,8 +156,8 @@ def lag_pairs(rows: int, columns: int, reach: int, pieces: int = 1) -> Array:
     return np.outer(rows - pieces * along, columns - across)
 
 
-def lag_products(heights: Array, reach: int) -> Array:
-    """Sums of products of heights about the mean, m², at lags up to `reach` along x and half of all across.
+def lag_products(heights: Array, reach: int, mean: float = 0.0) -> Array:
+    """Sums of products of heights about a mean, m², at lags up to `reach` along x and half of all across.
 
     Of shape (2 reach + 1, 2 (columns//2) + 1), zero lag in the middle.
     """
@@ -146,16 +165,19 @@ def lag_products(heights: Array, reach: int) -> Array:
     side = columns // 2
     length = fft.next_fast_len(rows + reach, real=True)  # what wraps is beyond the lags
     width = fft.next_fast_len(columns + side)
-    along = fft.rfft(heights, length, axis=0, workers=workers)
-    across = np.empty((len(along), side + 1), dtype=np.complex128)
-    for piece in _pieces((len(along), width)):
-        spectrum = fft.fft(along[piece], width, axis=1, workers=workers)
+    lines = np.empty((length // 2 + 1, columns), dtype=np.complex128)
+    for piece in _pieces((columns, length)):
+        lines[:, piece] = fft.rfft(heights[:, piece] - mean, length, axis=0, workers=workers)
+    for piece in _pieces((len(lines), width)):
+        spectrum = fft.fft(lines[piece], width, axis=1, workers=workers)
         power = spectrum.real**2 + spectrum.imag**2
-        across[piece] = np.conj(fft.rfft(power, axis=1, workers=workers)[:, : side + 1]) / width
-    del along
-    half = fft.irfft(across, length, axis=0, overwrite_x=True, workers=workers)
-    del across
-    half = np.concatenate([half[length - reach :], half[: reach + 1]])
+        lines[piece, : side + 1] = np.conj(fft.rfft(power, axis=1, workers=workers)[:, : side + 1]) / width
+    half = np.empty((2 * reach + 1, side + 1))
+    for piece in _pieces((side + 1, length)):
+        lags = fft.irfft(lines[:, : side + 1][:, piece], length, axis=0, workers=workers)
+        half[reach:, piece] = lags[: reach + 1]
+        half[:reach, piece] = lags[length - reach :]
+    del lines
     return np.hstack([half[::-1, :0:-1], half])  # the same at a lag and its opposite
 
 
@@ -175,10 +197,11 @@ def lengths_of(correlation: Array, spacing: tuple[float, float]) -> tuple[float,
     The correlation (odd, odd) holds mean products of heights, zero lag in the middle; lags and warning are as
     those of `autocorrelation_lengths`.
     """
-    middle = np.array(correlation.shape) // 2
+    lobe = _around_lobe(correlation)
+    middle = np.array(lobe.shape) // 2
     step = np.asarray(spacing)
-    lobe = correlation / correlation[tuple(middle)]
     coefficients = scipy.ndimage.spline_filter(lobe, order=3, mode="mirror")
+    coefficients /= lobe[tuple(middle)]
     lengths = []
     open_ended = False
     for angle in np.radians(np.arange(0.0, 180.0)):
@@ -201,3 +224,21 @@ def lengths_of(correlation: Array, spacing: tuple[float, float]) -> tuple[float,
             f"{max(lengths):.4g} m: Str is an upper bound; use a larger map or remove long wavelengths first"
         )
     return float(min(lengths)), float(max(lengths))
+
+
+def _around_lobe(correlation: Array) -> Array:
+    """Middle of a correlation, beyond whose edges nothing of the central lobe is left; all of it if need be.
+
+    With points beside it, so that where it ends is not felt in a spline.
+    """
+    middle = np.array(correlation.shape) // 2
+    least = 0.5 * CORRELATION_THRESHOLD * correlation[tuple(middle)]
+    reach = APART
+    while (reach + APART < middle).any():
+        sides = np.minimum(reach, middle)
+        box = correlation[tuple(slice(m - s, m + s + 1) for m, s in zip(middle, sides, strict=True))]
+        if max(float(box[[0, -1]].max()), float(box[:, [0, -1]].max())) <= least:
+            kept = np.minimum(sides + APART, middle)
+            return correlation[tuple(slice(m - k, m + k + 1) for m, k in zip(middle, kept, strict=True))]
+        reach *= 2
+    return correlation

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
-from itertools import pairwise, starmap
+from itertools import chain, pairwise, starmap
 
 import numpy as np
 import scipy
@@ -18,6 +18,8 @@ from asperity.surfaces.strip import Strip
 
 SEVEN_POINTS = ((3, 1.0), (2, -9.0), (1, 45.0))
 """Distances, points, and sixty times the weights of differences of heights in the slope between them."""
+SLOPES = ("dq", "dr")
+"""Parameters of the slopes of a map."""
 MARGIN = 3
 """Neighbours on either side that the slope at a point needs."""
 CORE = 0.4
@@ -81,14 +83,13 @@ def areal_statistics(surface: HeightMap, bandwidth: tuple[float, float] | None =
     the seven-point formula of ISO 4287:1997, NaN where no seven are in a row. If the autocorrelation does
     not fall to 0.2 inside the map, there is a warning, see `autocorrelation_lengths`.
     """
-    square = _square_slopes(surface.heights, surface.spacing)
-    slopes = {"dq": np.sqrt(_mean(square)), "dr": _mean(np.sqrt(1.0 + square)) - 1.0}
+    steepness = _steepness(_slope_sums(surface.heights, surface.spacing))
     whole = cleaning.nearly_complete(surface)
     texture = dict.fromkeys(("al", "tr", "td"), np.nan)
     if whole is not None:
         shortest, longest = spectra.autocorrelation_lengths(whole)
         texture = {"al": shortest, "tr": shortest / longest, "td": spectra.texture_direction(whole)}
-    values = _amplitudes(*_powers(surface.heights)) | slopes | texture | stratified(surface.heights)
+    values = _amplitudes(*_powers(surface.heights)) | steepness | texture | stratified(surface.heights)
     return _statistics("S", values, bandwidth or (2.0 * min(surface.spacing), max(surface.size)))
 
 
@@ -175,15 +176,30 @@ def _amplitudes(powers: Array, total: float) -> dict[str, float]:
 
 def rms_slope(surface: HeightMap) -> float:
     """Rms slope Sdq of levelled heights, m; missing points are left out."""
-    found = float(np.sqrt(_mean(_square_slopes(surface.heights, surface.spacing))))
+    found = _steepness(_slope_sums(surface.heights, surface.spacing))["dq"]
     received, allowed = "no seven valid points in a row along both axes", "enough valid points for slopes"
     require(math.isfinite(found), "surface", received, allowed, "Use fill first.")
     return found
 
 
-def _mean(values: Array) -> float:
-    """Mean of those that are known; NaN of none."""
-    return float(np.nanmean(values)) if np.isfinite(values).any() else math.nan
+def _steepness(sums: Array) -> dict[str, float]:
+    """Rms slope and developed area beyond the plane's, of `_slope_sums`; NaN of no slope."""
+    square, area, count = sums
+    return {"dq": math.sqrt(square / count), "dr": area / count} if count else dict.fromkeys(SLOPES, math.nan)
+
+
+def _slope_sums(heights: Array, spacing: tuple[float, float]) -> Array:
+    """Sums of squares of slopes, of developed areas beyond the plane's, and number of these, piece by piece.
+
+    At all points with three neighbours on every side; heights and spacings in m.
+    """
+    rows = max(1, PIECE // (4 * heights.shape[1]))
+    sums = np.zeros(3)
+    for first in range(0, len(heights) - 2 * MARGIN, rows):
+        square = _square_slopes(heights[first : first + rows + 2 * MARGIN], spacing)
+        known = square[np.isfinite(square)]
+        sums += [known.sum(), (np.sqrt(1.0 + known) - 1.0).sum(), known.size]
+    return sums
 
 
 def _square_slopes(heights: Array, spacing: tuple[float, float]) -> Array:
@@ -214,10 +230,25 @@ def _slopes(heights: Array, spacing: float, axis: int) -> Array:
     return np.moveaxis(slope, 0, axis)
 
 
-def material_ratio_curve(heights: Array, points: int = 201) -> tuple[Array, Array]:
-    """Material ratio (points,), 0 to 1, and the heights, m, that this share of the points reach or exceed."""
+def known_heights(several: Sequence[Array]) -> Array:
+    """Heights (n,) that are known, of arrays of any shape, in one that nobody else holds.
+
+    It may be put in another order: that takes no copy.
+    """
+    known = np.empty(sum(int(np.isfinite(heights).sum()) for heights in several))
+    first = 0
+    for piece in chain.from_iterable(map(_known, several)):
+        known[first : first + piece.size] = piece
+        first += piece.size
+    return known
+
+
+def material_ratio_curve(known: Array, points: int = 201) -> tuple[Array, Array]:
+    """Material ratio (points,), 0 to 1, and the heights, m, that this share of the points reach or exceed.
+
+    Of `known_heights`, whose order changes.
+    """
     ratio = np.linspace(0.0, 1.0, points)
-    known = heights[np.isfinite(heights)]
     return ratio, np.quantile(known, 1.0 - ratio, overwrite_input=True)
 
 
@@ -230,7 +261,7 @@ def stratified(heights: Array, mean: float = 0.0) -> dict[str, float]:
     their mean on; missing ones are left out. By the symbols of `PARAMETERS`: k, pk and vk, m, and the
     material ratios mr1, where peaks end, and mr2, where valleys begin.
     """
-    rising = heights[np.isfinite(heights)]
+    rising = known_heights([heights])
     rising.sort()
     rising -= mean
     falling = rising[::-1]
@@ -330,7 +361,7 @@ def survey_strip(strip: Strip, segment: int, first: int = 0, stop: int | None = 
     if high > low:
         sides = (stop - first) * strip.spacing[0], strip.shape[1] * strip.spacing[1]
         values = _amplitudes(powers / points, high - low)
-        values |= {"dq": np.sqrt(slopes[0] / slopes[2]), "dr": slopes[1] / slopes[2]}
+        values |= _steepness(slopes)
         pairs = spectra.lag_pairs(stop - first, strip.shape[1], reach, len(bounds))
         shortest, longest = spectra.lengths_of(products / pairs, strip.spacing)
         values |= {"al": shortest, "tr": shortest / longest}
@@ -352,11 +383,9 @@ def _bounds(strip: Strip, first: int, stop: int, segment: int) -> list[tuple[int
 def _sums(rows: Array, inner: slice, spacing: tuple[float, float], segment: int) -> tuple[Array, ...]:
     """What is added up over pieces of a strip, of rows about the mean, m, of which the inner ones count.
 
-    Of |z|, z², z³ and z⁴; of squares of slopes, of developed areas beyond the plane's, and the number of
-    these; spectra, m³, and the number of segments that they are of.
+    Of |z|, z², z³ and z⁴; those of `_slope_sums`; spectra, m³, and the number of segments that they are of.
     """
-    square = _square_slopes(rows, spacing)
-    slopes = np.array([square.sum(), (np.sqrt(1.0 + square) - 1.0).sum(), square.size])
+    slopes = _slope_sums(rows, spacing)
     z = rows[inner]
     squared = z * z
     powers = np.array([np.abs(z).sum(), squared.sum(), (squared * z).sum(), (squared * squared).sum()])
@@ -406,7 +435,10 @@ def homogeneity(surface: HeightMap, *, surrogates: int = 39, seed: int = 0) -> H
     allowed = f"2 points or more in each of {TILES[0]} × {TILES[1]} tiles"
     fit = all(n >= 2 * count for n, count in zip(surface.shape, TILES, strict=True))
     require(fit, "surface", f"{surface.shape} points", allowed)
-    coarse = _coarse(levelling.level(surface))
+    whole = levelling.level(surface)
+    coarse = _coarse(whole)
+    tile_rms = np.sqrt(_tile_mean_squares(whole))
+    del whole
     measured, (nx, ny) = _tile_mean_squares(levelling.level(coarse)), coarse.shape
     variation = float(measured.std() / measured.mean())
     long = synthesis.from_map(coarse, (nx * surrogates, ny), seed).heights
@@ -414,7 +446,6 @@ def homogeneity(surface: HeightMap, *, surrogates: int = 39, seed: int = 0) -> H
     squares = [_tile_mean_squares(levelling.level(piece)) for piece in pieces]
     chance = np.array([s.std() / s.mean() for s in squares])
     p_value = (1.0 + float(np.sum(chance >= variation))) / (surrogates + 1.0)
-    tile_rms = np.sqrt(_tile_mean_squares(levelling.level(surface)))
     return Homogeneity(tile_rms, variation, float(np.median(chance)), p_value)
 
 
@@ -427,8 +458,8 @@ def _coarse(surface: HeightMap) -> HeightMap:
 
 def _tile_mean_squares(surface: HeightMap) -> Array:
     px, py = (n // k for n, k in zip(surface.shape, TILES, strict=True))
-    kept = surface.heights[: px * TILES[0], : py * TILES[1]]
-    return np.mean(kept.reshape(TILES[0], px, TILES[1], py) ** 2, axis=(1, 3))
+    tiles = ((slice(i * px, (i + 1) * px), slice(j * py, (j + 1) * py)) for i, j in np.ndindex(TILES))
+    return np.array([np.mean(np.square(surface.heights[tile])) for tile in tiles]).reshape(TILES)
 
 
 def more_than_chance(p_values: Sequence[float]) -> bool:
