@@ -555,7 +555,9 @@ def test_a_line_of_the_shaft_one_place_beside_its_own_does_not_contradict_the_sp
     places = np.arange(1, 200) / 6.0
     told = places[20:]
     assert all(_agrees(beside, speed, 1.0 / 3.0) for beside, speed in zip(places[19:], told, strict=False))
-    assert not any(_agrees(beside, speed, 1.0 / 3.0) for beside, speed in zip(places, told[:20], strict=False))
+    assert not any(
+        _agrees(beside, speed, 1.0 / 3.0) for beside, speed in zip(places, told[:20], strict=False)
+    )
 
 
 def test_a_record_sampled_too_slowly_for_the_blows_is_no_sound_bearing():

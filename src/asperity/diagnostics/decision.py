@@ -396,8 +396,11 @@ def _at(speed: float, told: float) -> bool:
 
 
 def _agrees(speed: float, told: float, resolution: float) -> bool:
-    """Whether a speed by its lines is the one given, as far as the record resolves the two."""
-    return _at(speed, told) or abs(speed - told) <= 0.5 * resolution
+    """Whether a speed by its lines is the one given, as far as the record resolves the two.
+
+    Lines lie on places half a resolution apart, up to rounding.
+    """
+    return _at(speed, told) or abs(speed - told) <= 0.5001 * resolution
 
 
 def _multiple(ratio: float) -> bool:
