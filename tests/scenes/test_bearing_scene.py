@@ -27,6 +27,7 @@ from asperity.scenes.figures.bearing import ball_turn, load_zone
 from asperity.scenes.report import page_of
 from asperity.schema import bearing as schema
 from asperity.schema import spectra
+from asperity.structures.raceway_wear import raceway_wear
 from asperity.studies.member import kept
 from command_line import program
 from small_cases import BEARING
@@ -383,6 +384,9 @@ def test_raceways_wear_by_the_work_of_sliding_where_a_coefficient_is_given(runs)
     assert "wear_rate" not in group(runs(BEARING))
     heat = found["sliding_heat"].sum("ball").mean("cage_angle")
     np.testing.assert_allclose(found["worn_volume_rate"], 1e-8 / B6205.hardness * heat, rtol=1e-9)
+    case = as_case(BEARING)
+    deepest = raceway_wear(case.static, case.kinematics, 1e-8).depth.max(axis=2)
+    np.testing.assert_allclose(found["wear_rate"], deepest)
     depth = found["wear_rate"].sel(ring="outer")
     assert abs(np.sin(found["raceway_angle"].values[depth.values.argmax()])) < 0.1
     assert float(depth.min()) == 0.0

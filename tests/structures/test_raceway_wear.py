@@ -41,6 +41,30 @@ def test_what_wears_across_a_contact_is_in_all_what_slides_over_it(spin, curvatu
     assert whole == pytest.approx(sliding_speed(LOAD, AXES, spin, curvature, ALONG), rel=2e-3)
 
 
+def test_spin_adds_to_what_a_groove_makes_slide_on_one_side():
+    """Hertz's pressure times |(ξ − φ y, φ x)| along lines at both sides, summed in small steps."""
+    spin = 20.0
+    x = AXES[0] * (np.arange(20000) + 0.5 - 10000) / 10000
+    for share in (-0.6, 0.6):
+        y = AXES[1] * share
+        left = np.maximum(1.0 - (x / AXES[0]) ** 2 - share**2, 0.0)
+        pressure = 1.5 * LOAD / (np.pi * AXES[0] * AXES[1]) * np.sqrt(left)
+        slip = np.hypot(conformal_creepage(y, AXES[1], CURVATURE, ALONG) - spin * y, spin * x)
+        expected = (pressure * slip).sum() * (x[1] - x[0])
+        found = sliding_across(LOAD, AXES, spin, CURVATURE, ALONG, [share])
+        assert found == pytest.approx(expected, rel=1e-4)
+
+
+def test_balls_wear_a_groove_where_they_touch_it():
+    """Along its arc at the groove's radius times the contact angle, of a half axis to either side."""
+    loaded = B7205.loaded(0.0, 300.0)
+    found = raceway_wear(loaded, B7205.kinematics(SPEED), COEFFICIENT)
+    angles = loaded.inner_angle[0, 0], loaded.outer_angle[0, 0]
+    assert found.across.mean(axis=1) == pytest.approx(0.52 * B7205.ball_diameter * np.array(angles))
+    half = [loaded.semi_axes(ring)[1][0, 0] for ring in ("inner", "outer")]
+    assert np.ptp(found.across, axis=1) == pytest.approx(2.0 * np.array(half))
+
+
 @pytest.mark.parametrize("turning", ["inner", "outer"])
 @pytest.mark.parametrize(
     ("bearing", "load"), [(B6205, (300.0, 0.0)), (B7205, (0.0, 300.0)), (B7205, (200.0, 400.0))]
