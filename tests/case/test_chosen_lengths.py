@@ -121,3 +121,15 @@ def test_a_chosen_window_is_no_wider_than_the_measured_map():
     assert prepared.case.text == case.text  # it is not taken for given
     with pytest.raises(InputError, match=r"received 640 um; allowed: at most the measured map, 600 um"):
         prepare_case(case.with_(**{"contact.window": 6.4e-4}))
+
+
+def test_a_map_narrower_than_the_contact_is_told_as_one(tmp_path):
+    """No window would help: one that holds the contact is wider than the map."""
+    heights = 1e-8 * np.random.default_rng(2).standard_normal((19, 19))
+    surface = {"file": HeightMap(heights, (10e-6, 10e-6))}
+    case = BallOnBeam(laws=["hertz"], duration=0.01, surface=surface, ball={"load": 5.04})
+    told = (
+        r"surface.file: received maps of 190 um across; allowed: at least 205.\d um, 1.1 times the width .*"
+    )
+    with pytest.raises(InputError, match=told + "Measure wider maps, press less, or roll a smaller body"):
+        prepare_case(case)

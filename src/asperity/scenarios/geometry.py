@@ -16,6 +16,8 @@ from asperity.structures.outline import LARGEST_WHEEL, checked_outline, doubts_o
 from asperity.surfaces.cell_means import cell_means
 from asperity.written_numbers import in_newtons, rounded
 
+CLEAR = 1.1
+"""Least side of a window, over the width of the smooth contact under the load."""
 HIGHEST_FORCE = 8.0
 """Largest force that the chosen states cover, in loads of the class of the working load."""
 FILLED = 0.9
@@ -204,10 +206,10 @@ def _doubt_wheel(case: scene.Case) -> None:
 
 def _check_grid(cells: int, spacing: float, axes: tuple[float, float], load: float) -> None:
     """Hold the grid to the smooth contact under the load, N: the window holds it, cells are finer than it."""
-    wide = 2.2e6 * max(axes)
+    wide = CLEAR * 2e6 * max(axes)
     small = min(axes)
     width = f"the width of the smooth contact under {in_newtons(load)}"
-    allowed = f"at least {rounded(wide, 4)} um, 1.1 times {width}"
+    allowed = f"at least {rounded(wide, 4)} um, {CLEAR:g} times {width}"
     held = cells * spacing * 1e6
     require(held >= wide, "contact.window", f"{rounded(held, 4)} um", allowed, "Enlarge the window.")
     allowed = f"less than {rounded(2e6 * small, 2)} um, {width}"

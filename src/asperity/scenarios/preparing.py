@@ -31,7 +31,7 @@ from asperity.rolling.steps import warn_if_coarse
 from asperity.scenarios import compiling, reducing, run_time, running_in
 from asperity.scenarios.coverage import doubt_levels, problems_of_coverage
 from asperity.scenarios.doubts import doubt_sizes
-from asperity.scenarios.geometry import geometry_of, window_cells
+from asperity.scenarios.geometry import CLEAR, Geometry, geometry_of, window_cells
 from asperity.scenarios.problems import by_key, problems, refuse
 from asperity.scenarios.rim_cells import with_rims
 from asperity.scenarios.scanned_positions import table_stride
@@ -43,6 +43,7 @@ from asperity.structures.modal import HIGHEST
 from asperity.structures.track import Track
 from asperity.surfaces.strip import Rows, Strip
 from asperity.threads import one_thread_in_linear_algebra, thread_count
+from asperity.written_numbers import in_newtons, rounded
 
 LONG = 2.0
 """Processor time, s, after which no further sample is pressed."""
@@ -64,6 +65,7 @@ def prepare(case: Case, source: str = "case") -> PreparedCase:
         refuse(errors, source)
         prepared = PreparedCase(case, *made[:3])
         if (smaller := _within_the_map(case, prepared.textures)) is not None:
+            refuse(_problems_of_narrow_maps(smaller, prepared.shape), source)
             return prepare(smaller, source)
         refuse([*problems(prepared), *_problem_of_disk(prepared)], source)
         prepared = with_rims(prepared)
@@ -83,6 +85,20 @@ def _within_the_map(case: Case, textures: Textures) -> Case | None:
         return None
     cells = int(smallest) - 1 + int(smallest) % 2  # odd, as those of every window
     return with_chosen(case, {"contact": {"window": cells * case.contact.spacing}})
+
+
+def _problems_of_narrow_maps(case: Case, shape: Geometry) -> list[InputError]:
+    """Errors about measured maps that do not hold the smooth contact, with a window as wide as they are."""
+    least = CLEAR * 2.0 * max(shape.semi_axes)
+    held = window_cells(case.contact) * case.contact.spacing
+    if held >= least or case.surface.file is None:
+        return []
+    allowed = (
+        f"at least {rounded(least * 1e6, 4)} um, {CLEAR:g} times the width of the smooth contact under "
+        f"{in_newtons(shape.load)}"
+    )
+    remedy = "Measure wider maps, press less, or roll a smaller body over them."
+    return [InputError("surface.file", f"maps of {rounded(held * 1e6, 4)} um across", allowed, remedy)]
 
 
 def _problem_of_disk(prepared: PreparedCase) -> Iterator[InputError]:
