@@ -17,6 +17,8 @@ _HOME = {
     "HalfSpace": "contact.halfspace",
     "HeightMap": "surfaces.heightmap",
     "Hertz": "contact.hertz",
+    "FourPointBall": "contact.gothic_arch",
+    "GothicArch": "contact.gothic_arch",
     "LineContact": "contact.line",
     "Measured": "observables.observable",
     "Material": "reference.materials",
