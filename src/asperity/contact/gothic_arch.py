@@ -44,6 +44,7 @@ class GothicArch:
 
     Examples
     --------
+    >>> import math
     >>> from asperity import GothicArch
     >>> arch = GothicArch.at_angle(math.radians(45), ball_radius=2e-3, groove_radius=2.1e-3)
     >>> f"{arch.offset * 1e6:.1f} um, {arch.bottom_gap * 1e6:.1f} um below the ball"
@@ -136,6 +137,7 @@ class FourPointBall:
 
     Examples
     --------
+    >>> import math
     >>> from asperity import FourPointBall, GothicArch
     >>> arch = GothicArch.at_angle(math.radians(45), ball_radius=2e-3, groove_radius=2.1e-3)
     >>> ball = FourPointBall(arch, arch.contact(115e9), arch.contact(115e9), oversize=2e-6)
