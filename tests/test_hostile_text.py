@@ -26,7 +26,7 @@ from asperity.parameters import Quantity
 from asperity.results import GROUPS, read_result, save
 from asperity.schema import VERSION
 from asperity.studies.definition import load_study, study_of
-from asperity.studies.signals import read_signal
+from asperity.studies.recorded import read_signal
 from asperity.surfaces.readers import read_surface
 from asperity.surfaces.readers.headings import parsed_header, titles_of
 from asperity.text_files import blocks_of_lines, even_rows, number_in

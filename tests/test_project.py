@@ -23,7 +23,7 @@ from asperity.scenes.result import METHOD
 ROOT = Path(__file__).parents[1]
 PERSON = "TO BE FILLED IN BY A PERSON"
 READ = (".py", ".md", ".bib", ".rst", ".toml")
-USED = ("readers", "uff", "cluster", "app")  # extras of people, of which cupy needs a GPU
+USED = ("readers", "uff", "parquet", "cluster", "app")  # extras of people, of which cupy needs a GPU
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 
 

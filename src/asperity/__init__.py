@@ -51,6 +51,7 @@ _HOME = {
     "wheel_modes": "structures.wheel_modes",
     "what_helps": "studies.effects",
     "worn": "contact.wear",
+    "write_signals": "reporting.signal_files",
 }
 """Module of each public name; the cases of each kind come beside them."""
 

@@ -213,7 +213,7 @@ REFUSED = [
 ]  # fmt: skip
 
 
-DOCUMENTED = {"check", "study", "surface", "listen", "cite"}
+DOCUMENTED = {"check", "study", "surface", "listen", "signals", "cite"}
 
 
 def contents(folder):

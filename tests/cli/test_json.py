@@ -60,6 +60,7 @@ COMMANDS = {
     "study": ("study", "small.toml", "--vary", "seed=1, 2", "-o", "st", "--workers", "1"),
     "fit": ("fit", "track.toml", "--to", "hammer.csv", "--free", "track.pad_stiffness", "--starts", "1"),
     "listen": ("listen", "a"),
+    "signals": ("signals", "a"),
     "cite": ("cite", "a"),
     "cache": ("cache",),
 }

@@ -23,6 +23,14 @@ def test_a_run_is_written_as_sounds(ran):
     assert f"{len(list(Path('heard').glob('*.wav')))} files, all on one scale" in words_of(told)
 
 
+def test_signals_of_a_run_are_written_for_programs_of_measurement(ran):
+    told = call("signals", f"{ran.path}/run.nc").stdout
+    assert "1 file; signals.csv says what they are" in words_of(told)
+    assert (ran.folder / "signals" / "signals.uff").exists()
+    call("signals", ran.path, "--format", "wav", "--what", "contact_force", "-o", "w")
+    assert len(list(Path("w").glob("contact_force-*.wav"))) == len(list(Path("w").glob("*.wav"))) > 0
+
+
 def test_figures_of_a_run_are_drawn_when_asked(ran, monkeypatch):
     told = call("figures", f"{ran.path}/run.nc", "scene", "contact force levels", "--format", "pdf").stdout
     files = [ran.folder / "figures" / f"{name}.pdf" for name in ("scene", "force_bands")]

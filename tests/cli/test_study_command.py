@@ -14,7 +14,7 @@ import pytest
 import xarray as xr
 
 import asperity
-from asperity.cli.studying import varied
+from asperity.cli.studying import defined
 from asperity.studies.definition import load_study, study_of
 from command_line import RAIL, SMALL, call, words_of
 from small_cases import changed
@@ -243,7 +243,7 @@ def test_the_ready_list_is_a_study():
     said = call("new", "what-helps").stdout
     Path("helps.toml").write_text(said.replace("case.toml", "rail.toml"))
     listed = load_study("helps.toml").sweep
-    assert varied(Path("rail.toml"), ["seed = 1, 2, 3"], helps=True).sweep == listed
+    assert defined(Path("rail.toml"), ["seed = 1, 2, 3"], (), helps=True).sweep == listed
 
 
 @pytest.mark.long

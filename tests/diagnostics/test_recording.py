@@ -12,7 +12,7 @@ from asperity.diagnostics.prominence import Prominence
 from asperity.diagnostics.recording import Recording, SignalPieces, _median, _reached
 from asperity.errors import InputError
 from asperity.structures.ball_bearing import BallBearing
-from asperity.studies.signals import read_signal
+from asperity.studies.recorded import read_signal
 from faulty_signals import faulty_signal
 
 RATE, SPEED = 12_000.0, 29.3

@@ -10,7 +10,8 @@ import xarray
 from scipy.fft import rfft, rfftfreq
 
 import asperity
-from asperity.reporting.sound import FADE, PEAK, RATE, Sound, at_rate, pass_by_pressure, radiated, wav_bytes
+from asperity.reporting.sound import FADE, PEAK, RATE, Sound, at_rate, pass_by_pressure, radiated
+from asperity.wave_files import wave_bytes
 from refusals import refusals
 
 STEP = 1 / 37333.0
@@ -97,7 +98,7 @@ def test_names_of_a_foreign_result_lead_nowhere_else_and_silence_is_silence(tmp_
 
 
 def test_a_file_never_wraps():
-    with wave.open(io.BytesIO(wav_bytes([2.0, -2.0]))) as sound:
+    with wave.open(io.BytesIO(wave_bytes([2.0, -2.0], RATE, 1.0, "N"))) as sound:
         assert np.frombuffer(sound.readframes(2), "<i2").tolist() == [32767, -32767]
 
 

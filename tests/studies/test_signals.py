@@ -19,7 +19,9 @@ from asperity.case.toml import toml_text
 from asperity.errors import InputError
 from asperity.reporting.study_figures import key_figure
 from asperity.studies.axes import AS_IT_IS
-from asperity.studies.signals import SignalSet, read_record, read_signal, through_path, with_noise
+from asperity.studies.recorded import read_record, read_signal
+from asperity.studies.sensor_path import through_path, with_noise
+from asperity.studies.signals import SignalSet
 from command_line import call
 from refusals import refusals
 from small_cases import BEARING
@@ -308,7 +310,7 @@ test_signals_that_are_none = refusals(
     (
         "a.bin",
         b"\x00\x00\x01\x02\xff" * 40,
-        "bytes that are no text, and no signal; allowed: .npz, .npy, .wav, .mat or",
+        "bytes that are no text, and no signal; allowed: .npz, .npy, .wav, .mat, .parquet, .uff or",
     ),
     ("a.wav", wav(data=2**32 - 1, riff=2**32 - 1), "4294967295 bytes of samples, by its head, in 1200"),
     (
@@ -327,8 +329,8 @@ test_signals_that_are_none = refusals(
     ("a.npy", 1e-300 * np.sin(np.arange(9.0)), "values of up to 9.89·10⁻³⁰¹"),
     (
         "a.uff",
-        b"    -1\n    58\nNONE\nNONE\n 0.1 0.2\n",
-        "a universal file, dataset 58; .* Save the signal as .mat",
+        b"    -1\n    15\n         1         1         1        11  0.0E+00  0.0E+00  0.0E+00\n    -1\n",
+        "received datasets 15, 0 of them time responses; allowed: a time response in a dataset 58",
     ),
     of=recorded,
 )

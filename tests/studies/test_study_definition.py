@@ -8,7 +8,7 @@ from executors import BALL
 
 import asperity
 from asperity.case.cases import parse_case
-from asperity.cli.studying import varied
+from asperity.cli.studying import defined
 from asperity.errors import CaseError, InputError
 from asperity.studies.definition import TEMPLATE, expanded, load_study, study_of
 from refusals import refusals
@@ -75,7 +75,7 @@ test_what_is_wrong_is_explained = refusals(
     ("", "study.toml: received an empty file"),
     ("# nothing", "case: received nothing; allowed: the path of a case"),
     ("case = 3", "case: received 3; allowed: the path of a case"),
-    ("case = 'ball.toml'\nwhat = 1", "what: received an unknown key; allowed: case and"),
+    ("case = 'ball.toml'\nwhat = 1", "what: received an unknown key; allowed: case, [sweep] and"),
     ("case = [", "a study in TOML"),
     (SWEEP, "sweep: received nothing; allowed: a key with its values"),
     (f"{SWEEP}speeds = ['1 m/s']", 'sweep.speeds: received an unknown key.*Did you mean "speed"'),
@@ -106,7 +106,7 @@ def test_a_study_needs_a_valid_member_and_swept_keys_once():
 def test_ranges_have_steps_ratios_or_whole_numbers():
     """Behind --vary they stand beside other values."""
     words = ["speed = 80..300 km/h, 6 steps, 1 m/s", "seed=7, 1..3", "ball.load = 5 N, 10..80 N, 4 ratios"]
-    speed, seed, load = varied("ball.toml", words).axes
+    speed, seed, load = defined("ball.toml", words, (), helps=False).axes
     assert speed.variable.values == pytest.approx([*np.linspace(80, 300, 6) / 3.6, 1.0])
     assert expanded("x", "600..1800 1/min, 3 steps") == ["600 1/min", "1200 1/min", "1800 1/min"]
     assert speed.variable.attrs["typed_unit"] == "km/h"

@@ -10,7 +10,7 @@ from hypothesis import strategies as some
 
 from asperity import read_surface
 from asperity.errors import InputError, OutOfRangeWarning
-from asperity.studies.signals import read_signal
+from asperity.studies.recorded import read_signal
 from asperity.surfaces.readers import positions
 
 DIGITS = range(3, 9)

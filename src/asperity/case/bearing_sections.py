@@ -194,6 +194,7 @@ class AroundKeys(Section, parameters=_AROUND | {"trace": replace(_AROUND["trace"
 class FaultKeys(Section, parameters=_keys_of(Fault)):
     """One fault of a raceway or of a ball, or several alike around it."""
 
+    ABSENT_WITHOUT: ClassVar = "on"
     ELEMENT: ClassVar = "ball"
     """What may have it beside the raceways."""
 

@@ -90,6 +90,8 @@ class Section:
     """Pairs of keys of which one may be given."""
     RENAMED: ClassVar[Mapping[str, str]] = {}
     """Keys and sections of its bases by their names there, and what they are called here; both are read."""
+    ABSENT_WITHOUT: ClassVar[str] = ""
+    """Key without which the case has nothing of what the section describes; empty for none."""
     OFFERED: ClassVar[tuple[str, ...]] = ()
     """What `dir` lists beside the keys: what a section does for people."""
     given_names: frozenset[str]
@@ -243,6 +245,11 @@ class Section:
         if value:
             return bool(getattr(self, companion) == value)
         return not companion or any(getattr(self, each) is not None for each in companion.split(" or "))
+
+    @property
+    def is_absent(self) -> bool:
+        """Whether the case has nothing of what this section describes, whatever the defaults of its keys."""
+        return bool(self.ABSENT_WITHOUT) and getattr(self, self.ABSENT_WITHOUT) is None
 
     def default_of(self, name: str) -> Any:
         """Value of a key that is left out; without a fixed default, what was chosen for it."""

@@ -282,10 +282,16 @@ def refuse_other_case(what: str, asked: str, case: Path, by: str) -> None:
 
 SIGNALS = {
     "signals": ("FOLDER", "Of ball bearings: write the acceleration of each, and labels.csv."),
-    "format": ("FORMAT", "Of these signals: nc, npy or wav. [default: nc]"),
-    "path": ("FILE", "Impulse response of a path to the sensor: .npy, .wav or a table."),
+    "format": (
+        "FORMAT",
+        "Of these signals: nc, npy, wav, uff, or parquet, which bearing-datasets opens. [default: nc]",
+    ),
+    "path": (
+        "PATH",
+        "Impulse response of a path to the sensor: .npy, .wav or table; or drawn: '1..6 kHz, 3 resonances'.",
+    ),
     "path-rate": ("FREQUENCY", "Its sampling rate, as '48 kHz'."),
-    "noise": ("LEVEL", "Noise: '20 dB' below the signal, or an rms, '0.5 m/s^2'."),
+    "noise": ("LEVEL", "Noise: '20 dB' below the signal, an rms, '0.5 m/s^2', or drawn: '0..30 dB'."),
 }
 
 
@@ -458,6 +464,13 @@ STUDY = [
         "'80..300 km/h, 6 steps', '60..1900 MN/m, 6 ratios', '1..20'. May be repeated.",
     ),
     click.Option(
+        ["--draw"],
+        multiple=True,
+        metavar="KEY=SPAN",
+        help="A key of which each member gets a value by chance: '50..500 N', '0.2..3 mm, ratios', one of a "
+        "list, or a speed that wanders in the record, '1200..1800 1/min ± 0.5 %'. May be repeated.",
+    ),
+    click.Option(
         ["--show"],
         multiple=True,
         metavar="NAMES",
@@ -493,6 +506,20 @@ FIT = [
         ["--starts"],
         type=click.IntRange(1, 100),
         help="Places from which is searched. [default: 8, of runs 1]",
+    ),
+]
+WRITTEN = [
+    click.Option(
+        ["--format"],
+        type=click.Choice(["uff", "wav"]),
+        default="uff",
+        show_default=True,
+        help="One universal file (dataset 58), or a WAV file for each signal.",
+    ),
+    click.Option(
+        ["--what"],
+        metavar="NAME",
+        help="One variable of the run, as contact_force. [default: all but displacements]",
     ),
 ]
 LISTEN = [

@@ -87,7 +87,12 @@ def run(case: Path, directory: Path | None, **choices: bool) -> Document:
 @commands.overwrite("another study")
 @commands.device
 def study(
-    study: Path, vary: tuple[str, ...], what_helps: bool, directory: Path | None, **choices: Any
+    study: Path,
+    vary: tuple[str, ...],
+    draw: tuple[str, ...],
+    what_helps: bool,
+    directory: Path | None,
+    **choices: Any,
 ) -> Document:
     """Compute a case for every combination of the values of some keys, into one table.
 
@@ -114,11 +119,12 @@ def study(
     asperity study study.toml -o runs/grid --workers 4
     # labelled signals of faulty bearings, behind a measured path
     asperity study bearing.toml --vary "fault.length = 0.1..0.5 mm, 5 steps" --signals set --path path.wav
+    # a set to train on, sizes drawn by chance
+    asperity study bearing.toml --vary "seed = 1..9" --draw "fault.length = 1..3 mm" --signals set
     """
-    from asperity.cli.studying import run_study, varied
-    from asperity.studies.definition import load_study
+    from asperity.cli.studying import defined, run_study
 
-    definition = varied(study, vary, helps=what_helps) if vary or what_helps else load_study(study)
+    definition = defined(study, vary, draw, helps=what_helps)
     return run_study(definition, directory or Path("runs") / study.stem, **choices)
 
 

@@ -23,7 +23,7 @@ from asperity.scenes.bearing_at_rest import tones_group
 from asperity.scenes.bearing_heard import HARMONICS, REACH, envelope_group
 from asperity.scenes.figures.bearing import envelope_spectrum, kurtogram_panel
 from asperity.schema import tree
-from asperity.studies.signals import Recorded, read_record
+from asperity.studies.recorded import Recorded, read_record
 from asperity.studies.tacho import Turned, at_constant_speed, fitting_speed, read_turned
 from asperity.surfaces.readers.hints import on_command_line, spelled
 from asperity.terminal import say, say_table

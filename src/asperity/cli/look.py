@@ -143,6 +143,24 @@ def listen(run: Path, what: str | None, matched: bool, directory: Path | None) -
     return write_sounds(run, directory, what, matched=matched)
 
 
+@_look("Write signals of a run as programs of measurement read them.", params=commands.WRITTEN)
+@commands.run_argument
+@output("Folder of the signals. [default: signals, beside the run]")
+def signals(run: Path, what: str | None, format: str, directory: Path | None) -> Document:
+    """Write force, acceleration, pressure, speed and spectra of a RUN (run.nc, or its folder) to files.
+
+    Examples
+    --------
+    # all of them in one universal file (UFF 58), in SI: runs/case/signals/signals.uff
+    asperity signals runs/case
+    # the accelerometer as WAV of 24 bits; the value of full scale stands in the file and in signals.csv
+    asperity signals runs/case --format wav --what ring_acceleration
+    """
+    from asperity.cli.results import write_measured
+
+    return write_measured(run, directory, what, format)
+
+
 @_look("Say what to cite for a run.")
 @commands.run_argument
 def cite(run: Path) -> Document:

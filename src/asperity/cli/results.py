@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from asperity.files import amount, discard, left_overs, refuse_unwritable, together
-from asperity.reporting import data, sound
+from asperity.reporting import data, signal_files, sound
 from asperity.reporting.comparison_page import summary
 from asperity.reporting.figure import chosen_figures, write_figures
 from asperity.results import read_result
@@ -65,6 +65,15 @@ def write_sounds(run: Path, folder: Path | None, what: str | None, *, matched: b
         f"{sound.TABLE} says which is which"
     )
     return {"run": run.resolve(), "matched": matched, "files": {path.name: path for path in files}}
+
+
+def write_measured(run: Path, folder: Path | None, what: str | None, format: str) -> dict[str, Any]:
+    """Write signals of a run, by default into ``signals`` beside it."""
+    target = _folder_beside(run, folder, "signals")
+    files = signal_files.write_signals(read_result(run), target, format=format, what=what)
+    count, table = count_of(len(files), "file"), signal_files.TABLE
+    say(f"Signals: {target.absolute()}, {count}; {table} says what they are")
+    return {"run": run.resolve(), "files": {path.name: path for path in files}}
 
 
 def compare_runs(paths: Sequence[Path], target: Path) -> None:

@@ -11,7 +11,7 @@ from typing import Any
 import xarray
 
 from asperity import files
-from asperity.arguments import shown
+from asperity.arguments import require, shown
 from asperity.cli.commands import taken_folder
 from asperity.errors import CaseError, InputError
 from asperity.laws import spec_of
@@ -25,7 +25,7 @@ from asperity.scenes.figures.effects import Effects, effects_table
 from asperity.schema.spectra import FORCE_LEVEL
 from asperity.studies import table as tables
 from asperity.studies.axes import VARIANT
-from asperity.studies.definition import Study, separated, study_of
+from asperity.studies.definition import Study, load_study, separated, study_of
 from asperity.studies.effects import effects, judged_levels, what_helps
 from asperity.studies.ensemble import FEWEST, SEED, mean_and_scatter, prediction_band
 from asperity.studies.member import PLACES, VELOCITY_LEVEL
@@ -81,7 +81,8 @@ def run_study(
     with files.alone_in(directory):
         if not overwrite:
             _refuse_other(study, directory)
-        remark(f"Study of {' × '.join(f'{len(axis.values)} {axis.name}' for axis in study.axes)}")
+        drawn = f"; drawn: {', '.join(study.drawn)}" if study.draws else ""
+        remark(f"Study of {' × '.join(f'{len(axis.values)} {axis.name}' for axis in study.axes)}{drawn}")
         place = nullcontext() if scheduler is None else cluster(scheduler)
         with place as executor, progress_bar() as progress:
             table = computed(study, executor=executor, workers=workers, progress=progress, signals=heard)
@@ -105,6 +106,7 @@ def run_study(
     heading, rows = tables.columns_of(chosen, bands=bool(asked))
     return {
         "sweep": study.sweep,
+        "draw": study.drawn,
         "members": int(table["completed"].size),
         "completed": int(table["completed"].sum()),
         "columns": heading,
@@ -125,22 +127,37 @@ def _signals(signals: str | None = None, **how: str | None) -> SignalSet | None:
     return None if signals is None else SignalSet(signals, **given)
 
 
-def varied(case: Path, words: Sequence[str], *, helps: bool = False) -> Study:
-    """Make a study of a case from the words of the command line, each ``KEY=VALUE, VALUE, …``.
+def defined(study: Path, words: Sequence[str], drawn: Sequence[str], *, helps: bool) -> Study:
+    """Read a study; or make one of a case by the words of the command line, each ``KEY=VALUE, VALUE, …``.
 
-    With the ready list of what helps, if it is asked for.
+    With the ready list of what helps, if it is asked for; and with keys that are drawn, each ``KEY=SPAN``.
     """
-    sweep: dict[str, list[Any]] = {}
+    if not (words or drawn or helps):
+        return load_study(study)
+    vary = _by_key("--vary", words, "speed = 20 m/s, 200 km/h")
+    sweep = {name: [_value(each) for each in separated(values)] for name, values in vary.items()}
+    draw: dict[str, Any] = dict(_by_key("--draw", drawn, "radial = 50..500 N"))
+    draw = {
+        name: text if ".." in text or "±" in text else [_value(each) for each in separated(text)]
+        for name, text in draw.items()
+    }
+    require(not (helps and draw), "--draw", "keys that are drawn", "none with --what-helps")
+    return what_helps(study, sweep) if helps else study_of(study, sweep, draw)
+
+
+def _by_key(option: str, words: Sequence[str], example: str) -> dict[str, str]:
+    """Values of an option that may be repeated by their keys, each ``KEY=VALUES``."""
+    found: dict[str, str] = {}
     for word in words:
         name, mark, values = (part.strip() for part in word.partition("="))
         if not mark or not name:
-            remedy = "Write, for instance, --vary 'speed = 20 m/s, 200 km/h'."
-            raise InputError("--vary", shown(word), "a key of the case, =, and its values", remedy)
-        if name in sweep:
+            remedy = f"Write, for instance, {option} '{example}'."
+            raise InputError(option, shown(word), "a key of the case, =, and its values", remedy)
+        if name in found:
             received = f"{name} more than once"
-            raise InputError("--vary", received, "each key once", "Put all values behind one.")
-        sweep[name] = [_value(each) for each in separated(values)]
-    return what_helps(case, sweep) if helps else study_of(case, sweep)
+            raise InputError(option, received, "each key once", "Put all values behind one.")
+        found[name] = values
+    return found
 
 
 def _value(word: str) -> Any:
@@ -160,7 +177,8 @@ def _refuse_other(study: Study, directory: Path) -> None:
         return
     try:
         earlier = attributes_of(file)
-        same = earlier.get("case") == study.text and json.loads(earlier["sweep"]) == study.sweep
+        told = json.loads(earlier["sweep"]), json.loads(earlier["draw"])
+        same = earlier.get("case") == study.text and told == (study.sweep, study.drawn)
     except (InputError, ValueError, KeyError, TypeError):  # damaged, or of another kind
         same = False
     if not same:

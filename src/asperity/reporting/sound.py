@@ -1,9 +1,6 @@
 """Sound pressure beside the track while a vehicle passes, from its sound power and its contact force."""
 
-import io
 import re
-import wave
-from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
@@ -20,6 +17,7 @@ from asperity.files import together, write_bytes
 from asperity.schema.rolling import CONTACT, CONTACT_FORCE, LAW, SPEED, TIME
 from asperity.spectra import HALF_BAND, a_weighting, band_energies, energy_sum
 from asperity.text_files import write_csv
+from asperity.wave_files import wave_bytes
 from asperity.written_numbers import rounded
 
 PASS_BY = "pass_by_pressure"
@@ -188,7 +186,9 @@ def listen(result: DataTree, path: FilePath, *, what: str | None = None, matched
     ]
     with together(folder, last=TABLE) as new:
         for sound, each in zip(sounds, full, strict=True):
-            write_bytes(new / sound.file_name, wav_bytes(sound.samples / each))
+            write_bytes(
+                new / sound.file_name, wave_bytes(sound.samples, RATE, each, sound.unit, what=sound.quantity)
+            )
         write_csv(new / TABLE, heading, rows)
     return [folder / sound.file_name for sound in sounds]
 
@@ -244,12 +244,3 @@ def at_rate(signal: Array, step: float) -> Array:
     n = len(signal)
     soft = (signal - signal.mean()) * tukey(n, min(2.0 * FADE / (n * step), 1.0))
     return np.asarray(resample(soft, max(round(n * step * RATE), 2)))
-
-
-def wav_bytes(samples: Sequence[float] | Array) -> bytes:
-    """A mono WAV file, 48 kHz, 16 bits, of samples between −1 and 1."""
-    file = io.BytesIO()
-    with wave.open(file, "wb") as sound:
-        sound.setparams((1, 2, RATE, 0, "NONE", "not compressed"))
-        sound.writeframes(np.round(32767 * np.clip(samples, -1.0, 1.0)).astype("<i2").tobytes())
-    return file.getvalue()

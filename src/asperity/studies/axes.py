@@ -157,6 +157,8 @@ def value_of(case: AnyCase, entry: CaseKey) -> Any:
         raise Nothing(
             f"the case has no {entry.dotted}{f', which goes with {companion}' if companion else ''}"
         )
+    if section.is_absent:
+        raise Nothing(f"the case has no {entry.section}")
     now = getattr(section, entry.name)
     now = section.default_of(entry.name) if now is None else now
     if now is None:

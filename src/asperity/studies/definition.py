@@ -4,7 +4,7 @@ import json
 import math
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -18,11 +18,11 @@ from asperity.case.form import case_key, content, file_digest
 from asperity.errors import CaseError, InputError
 from asperity.parameters import Origin
 from asperity.studies.axes import VARIANT, SweptAxis, VariantAxis, as_in_toml, flat, variant_axis, written_out
-from asperity.written_numbers import count_of
+from asperity.studies.draws import Draw, drawn_values
+from asperity.written_numbers import NUMBER, count_of
 
-_NUMBER = r"[+-]?(?:\d++\.?\d*+|\.\d++)(?:[eE][+-]?\d++)?"
 _RANGE = re.compile(
-    rf"\s*({_NUMBER})\s*\.\.\s*({_NUMBER})\s*((?:1/)?[^\d\s,][^,]{{0,40}})?(?:,\s*(\d{{1,5}})\s*(steps|ratios))?\s*"
+    rf"\s*({NUMBER})\s*\.\.\s*({NUMBER})\s*((?:1/)?[^\d\s,][^,]{{0,40}})?(?:,\s*(\d{{1,5}})\s*(steps|ratios))?\s*"
 )
 _BETWEEN = re.compile(r",(?!\s*\d+\s*(?:steps|ratios)\s*(?:,|$))")
 """Commas between the values of a list, but for that before the number of steps."""
@@ -97,6 +97,8 @@ seed = "1..3"                   # every whole number; "6 ratios" in place of ste
 # [sweep.variant."light and slow"]  # named changes of several keys, each compared with the case as it is:
 # speed = "times 0.8"             # times, plus or minus what it has, or any value
 # wheel.load = "50 kN"
+# [draw]                        # keys of which each case gets a value by chance, or one of a list
+# radial = "50..500 N, ratios"
 """
 
 
@@ -109,6 +111,7 @@ class Member:
     case: AnyCase | None  # None if its values do not fit together
     error: CaseError | None  # why there is no case
     key: str  # names its result by everything the result depends on
+    drawn: dict[str, Any] = field(default_factory=dict)  # the keys that are drawn, likewise
 
     @property
     def label(self) -> str:
@@ -123,6 +126,7 @@ class Study:
     data: dict[str, Any]  # keys and values of the case, sections as dicts
     origin: Origin  # where they come from
     axes: tuple[SweptAxis | VariantAxis, ...]  # the keys that are swept, and named changes
+    draws: tuple[Draw, ...] = ()  # the keys that are drawn for each member
 
     @property
     def text(self) -> str:
@@ -138,6 +142,11 @@ class Study:
     def sweep(self) -> dict[str, Any]:
         """Swept keys with their values, and named changes, as they stand in TOML."""
         return {axis.name: axis.told for axis in self.axes}
+
+    @property
+    def drawn(self) -> dict[str, Any]:
+        """Keys that are drawn, with what they are drawn from, as they stand in TOML."""
+        return {draw.name: draw.told for draw in self.draws}
 
     def members(self) -> list[Member]:
         """List all cases; the last key varies fastest. A `CaseError` says that none is valid.
@@ -160,38 +169,48 @@ class Study:
     ) -> Member:
         values = {axis.name: axis.written[i] for axis, i in zip(self.axes, index, strict=True)}
         try:
-            case = self._case(values).with_(**shared)
+            case, data = self._case(values)
+            drawn = drawn_values(self.draws, case, values)
+            case = cases.case_of(_with_values(data, drawn), self.origin) if drawn else case
+            case = case.with_(**shared)
         except CaseError as error:
             return Member(index, values, None, error, "")
-        return Member(index, values, case, None, case_key("member", FORMAT, case, of_file=digest_of))
+        return Member(index, values, case, None, case_key("member", FORMAT, case, of_file=digest_of), drawn)
 
-    def _case(self, values: Mapping[str, Any]) -> AnyCase:
-        """The case with values of the swept keys, and with what a variant changes of that."""
-        data = _with_values(self.data, {key: value for key, value in values.items() if key != VARIANT})
+    def _case(self, values: Mapping[str, Any]) -> tuple[AnyCase, dict[str, Any]]:
+        """The case with values of the swept keys and what a variant changes of that, and its keys."""
+        drawn = {draw.name: draw.first for draw in self.draws if not draw.entry.section}
+        swept = {key: value for key, value in values.items() if key != VARIANT}
+        data = _with_values(self.data, drawn | swept)
         case = cases.case_of(data, self.origin)
         for axis in self.axes:
             if isinstance(axis, VariantAxis) and (keys := axis.keys(values[VARIANT], case)):
-                changed = cases.case_of(_with_values(data, keys), self.origin)
+                varied = _with_values(data, keys)
+                changed = cases.case_of(varied, self.origin)
                 if changed == case:
                     raise CaseError(values[VARIANT], ["nothing changes: the case is so already"])
-                return changed
-        return case
+                return changed, varied
+        return case, data
 
 
 def load_study(path: FilePath) -> Study:
-    """Read a study, with all its values, from a TOML file: ``case``, a path or a section, and ``[sweep]``.
+    """Read a study from a TOML file: ``case``, a path or a section, ``[sweep]``, and perhaps ``[draw]``.
 
     All errors of keys and values are reported at once.
     """
     remedy = "Check the path, or write a study with 'asperity new study > study.toml'."
     data, base, origin = cases.read_with_case(path, "study", remedy)
-    if unknown := sorted(data.keys() - {"sweep"}):
-        errors = [InputError(name, "an unknown key", "case and [sweep]") for name in unknown]
+    if unknown := sorted(data.keys() - {"sweep", "draw"}):
+        errors = [InputError(name, "an unknown key", "case, [sweep] and [draw]") for name in unknown]
         raise CaseError(str(path), list(map(str, errors)))
-    return _checked(base, origin, data.get("sweep", {}), path)
+    return _checked(base, origin, data.get("sweep", {}), path, data.get("draw", {}))
 
 
-def study_of(case: FilePath | Mapping[str, Any] | AnyCase, sweep: Mapping[str, Any]) -> Study:
+def study_of(
+    case: FilePath | Mapping[str, Any] | AnyCase,
+    sweep: Mapping[str, Any],
+    draw: Mapping[str, Any] | None = None,
+) -> Study:
     """Make a study of a case.
 
     Parameters
@@ -202,6 +221,11 @@ def study_of(case: FilePath | Mapping[str, Any] | AnyCase, sweep: Mapping[str, A
         Keys with lists of values, in SI or as text with a unit: ``{"contact.spacing": ["4 um", "8 um"]}``;
         or with a range as text: ``{"speed": "80..300 km/h, 6 steps"}`` has six values, both ends among them,
         ``"60..1900 MN/m, 6 ratios"`` six in equal ratios, and ``"1..20"`` every whole number.
+    draw : mapping of str, optional
+        Keys of which each member gets a value by chance: between two ends, ``{"radial": "50..500 N"}``, with
+        equal chances of equal ratios, ``"0.2..3 mm, ratios"``, or one of a list; of a speed with a jitter,
+        ``"1200..1800 1/min ± 0.5 %"``, by whose rms it wanders in the record. A member draws the same again;
+        what a case does not have, as the length of a fault of a sound bearing, is not drawn.
 
     Returns
     -------
@@ -215,11 +239,11 @@ def study_of(case: FilePath | Mapping[str, Any] | AnyCase, sweep: Mapping[str, A
     CaseError
         With all errors at once, if keys or values are wrong.
     """
-    return _checked(*cases.keys_and_origin(case), sweep, "study")
+    return _checked(*cases.keys_and_origin(case), sweep, "study", draw or {})
 
 
-def _checked(data: dict[str, Any], origin: Origin, sweep: object, source: FilePath) -> Study:
-    """Read the swept values, or say all that is wrong with them."""
+def _checked(data: dict[str, Any], origin: Origin, sweep: object, source: FilePath, draw: object) -> Study:
+    """Read swept and drawn values, or say all that is wrong with them."""
     if not isinstance(sweep, Mapping) or not sweep:
         received = "nothing" if not sweep else shown(sweep)
         example = 'Write [sweep] and below it, for instance, speed = ["20 m/s", "56 m/s"].'
@@ -245,9 +269,31 @@ def _checked(data: dict[str, Any], origin: Origin, sweep: object, source: FilePa
         received = f"{' × '.join(map(str, lengths))} = {count_of(count, 'member')}"
         remedy = "Split the study: what is finished is kept."
         errors.append(InputError("sweep", received, f"at most {MOST_MEMBERS} members", remedy))
+    draws, wrong = _draws(data.get("kind"), draw, axes, origin)
+    errors += wrong
     if errors:
         raise CaseError(str(source), list(dict.fromkeys(map(str, errors))))
-    return Study(data, origin, tuple(axes.values()))
+    return Study(data, origin, tuple(axes.values()), draws)
+
+
+def _draws(
+    kind: object, given: object, axes: Mapping[str, Any], origin: Origin
+) -> tuple[tuple[Draw, ...], list[InputError]]:
+    """Read the keys that are drawn, and list what is wrong with them."""
+    if not isinstance(given, Mapping):
+        return (), [InputError("draw", shown(given), "keys, each with what it is drawn from")]
+    found, errors = dict[str, Draw](), list[InputError]()
+    for dotted, source in flat(given):
+        if len(found) + len(errors) >= MOST_KEYS:
+            errors.append(InputError("draw", "more keys", f"at most {MOST_KEYS} keys"))
+            break
+        try:
+            twice = dotted in axes or dotted in found
+            require(not twice, dotted, "the key more than once", "each key once, swept or drawn")
+            found[dotted] = Draw.read(cases.case_class(kind), dotted, source, origin)
+        except InputError as error:
+            errors.append(error if error.what == "kind" else error.about(f"draw.{error.what}"))
+    return tuple(found.values()), errors
 
 
 def _axis(kind: object, dotted: str, values: object, origin: Origin) -> SweptAxis:

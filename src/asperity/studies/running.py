@@ -146,6 +146,7 @@ def study(
     definition: FilePath | Mapping[str, Any] | Study | AnyCase,
     sweep: Mapping[str, Any] | None = None,
     *,
+    draw: Mapping[str, Any] | None = None,
     executor: futures.Executor | None = None,
     workers: int | None = None,
     progress: Progress | None = None,
@@ -160,6 +161,9 @@ def study(
     sweep : mapping of str to list, optional
         Keys with lists of values as they stand in TOML, as ``{"contact.spacing": ["4 um", "8 um"]}``, or with
         a range, as ``{"speed": "80..300 km/h, 6 steps"}``: six values, both ends among them.
+    draw : mapping of str, optional
+        With `sweep`, keys of which each member gets a value by chance: between ends, as ``{"radial": "50..500
+        N"}``, or one of a list. See `asperity.studies.definition.study_of`.
     executor : concurrent.futures.Executor, optional
         Where the members are computed: for instance the executor of a Dask client. By default processes of
         this machine; a script then needs ``if __name__ == "__main__":`` around the call. Laws registered from
@@ -206,7 +210,7 @@ def study(
     >>> table["rms_force"].dims, table["speed"].values.tolist()
     (('speed', 'law'), [1.0, 2.0])
     """
-    plan = _planned(definition, sweep)
+    plan = _planned(definition, sweep, draw)
     if workers is not None:
         workers = whole("workers", workers, "a whole number greater than 0, or None", at_least=1)
     from asperity.scenarios.compiling import compile_kernels
@@ -240,14 +244,17 @@ def study(
 
 
 def _planned(
-    definition: FilePath | Mapping[str, Any] | Study | AnyCase, sweep: Mapping[str, Any] | None
+    definition: FilePath | Mapping[str, Any] | Study | AnyCase,
+    sweep: Mapping[str, Any] | None,
+    draw: Mapping[str, Any] | None,
 ) -> Study:
+    require(draw is None or sweep is not None, "draw", "keys without sweep", "keys beside those of sweep")
     if isinstance(definition, Study):
         allowed = "a case with keys, or a study alone"
         require(sweep is None, "sweep", "keys for a study that has its own", allowed)
         return definition
     if sweep is not None:
-        return study_of(definition, sweep)
+        return study_of(definition, sweep, draw)
     if isinstance(definition, str | os.PathLike):
         return load_study(definition)
     a_case = isinstance(definition, AnyCase | Mapping)

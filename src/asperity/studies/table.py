@@ -43,6 +43,7 @@ def tabulated(
     for index, _ in ordered:
         completed[index] = 1
     variables["completed"] = variable(swept, completed, "1", "whether the member was computed")
+    variables |= _drawn(study, members)
     for name, first in _first_of_each([table for _, table in ordered]).items():
         sizes = [coordinates[str(dim)].size for dim in first.dims]
         values = np.full((*study.shape, *sizes), np.nan)
@@ -54,6 +55,23 @@ def tabulated(
         gaps = {} if np.isfinite(values).all() else {"missing": "the member failed, or has no such value"}
         variables[name] = xarray.Variable((*swept, *first.dims), values, first.attrs | gaps)
     return xarray.Dataset(variables, attrs=_attributes(study, members, ordered, failures))
+
+
+def _drawn(study: Study, members: Sequence[Member]) -> dict[str, xarray.Variable]:
+    """Numbers that were drawn for each member, in SI, the mean of a speed that wanders; words stand in its
+    case."""
+    swept = [axis.name for axis in study.axes]
+    found = {}
+    for draw in study.draws:
+        values = np.full(study.shape, np.nan)
+        for member in members:
+            if draw.name in member.drawn:
+                values[member.index] = draw.number(member.drawn[draw.name])
+        if np.isfinite(values).any():
+            gaps = {} if np.isfinite(values).all() else {"missing": "the case does not have it"}
+            told = draw.entry.unit or "1", draw.entry.key.meaning
+            found[draw.name] = variable(swept, values, *told, **gaps)
+    return found
 
 
 def _first_of_each(tables: Sequence[xarray.Dataset]) -> dict[str, xarray.Variable]:
@@ -102,6 +120,7 @@ def _attributes(
         "asperity_version": __version__,
         "case": study.text,
         "sweep": _json(study.sweep),
+        "draw": _json(study.drawn),
         "citations": _json(list(citations)),
         "warnings": _json(_warnings([table for _, table in ordered])),
         "failures": _json(_grouped(members, failures)),

@@ -12,7 +12,7 @@ from asperity.case.table_headings import unit_of
 from asperity.diagnostics import orders
 from asperity.errors import InputError
 from asperity.speeds import FEWEST_TURNS
-from asperity.studies.signals import Recorded, read_beside
+from asperity.studies.recorded import Recorded, read_beside
 from asperity.units import factor
 from asperity.written_numbers import count_of, rounded
 
