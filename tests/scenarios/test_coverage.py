@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from asperity import Profile, WheelOnRail
+from asperity import BallOnBeam, Profile, WheelOnRail
 from asperity.case.tables import read_levels
 from asperity.errors import InputError, OutOfRangeWarning, PhysicsWarning
 from asperity.reference.cnossos import rail_roughness
@@ -169,6 +169,16 @@ def test_a_measured_line_over_a_track_without_a_wave_that_is_heard_is_doubted_or
     (doubt,) = [each for each in said if "one-third octaves from" in each] or [""]
     assert told in doubt
     assert doubt.startswith("surface.line: ") == bool(told)
+
+
+def test_a_short_line_on_a_beam_is_not_doubted():
+    """Of 8 mm at 20 m/s, waves that are heard from 2.5 kHz on: a rig is looked at where it has waves."""
+    line = Profile(1e-8 * np.random.default_rng(4).normal(size=800), 1e-5)
+    rig = BallOnBeam(
+        laws=["hertz"], duration=0.01, speed=20.0, surface={"line": line, "continuation": "repeat"}
+    )
+    said = [str(each.message) for each in prepare(rig, "case").caught]
+    assert not [each for each in said if "one-third octaves from" in each]
 
 
 def test_a_single_band_is_told_as_one():

@@ -1,6 +1,7 @@
 """What chance and a start from rest leave of levels; one population or several: against closed forms."""
 
 import json
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -8,7 +9,7 @@ from scipy import stats
 from scipy.stats import gamma
 
 from asperity.reporting.tables import population_table
-from asperity.scenes.population import along_over_across, levels_along, told_apart
+from asperity.scenes.population import _is_drawn, along_over_across, levels_along, told_apart
 from asperity.spectra import band_product, chance_and_start, level_deviation, values_seen
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.synthesis import self_affine
@@ -218,3 +219,19 @@ def test_a_path_that_is_drawn_is_not_judged_by_one_realisation_of_it(runs, spect
     assert asked(tree)["Is the path the same all along?"]["value"] == "drawn, not measured"
     assert "along the path" not in tree.attrs["verdict"]
     assert "Is the path the same" not in tree.attrs["warnings"]
+
+
+@pytest.mark.parametrize(
+    ("rough", "drawn", "all_of_it"),
+    [
+        (["rail"], ["surface"], True),
+        (["rail", "wheel"], ["surface", "wheel"], True),
+        (["rail", "wheel"], ["surface"], False),  # the wheel was measured
+        (["rail", "wheel"], ["wheel"], False),
+        (["rail"], ["wheel"], False),
+    ],
+)
+def test_a_path_is_drawn_if_all_that_is_rough_is(rough, drawn, all_of_it):
+    parts = {name: np.full(3, float(name in rough)) for name in ("rail", "wheel")}
+    textures = SimpleNamespace(parts=parts, drawn=dict.fromkeys(drawn, "seed 1"))
+    assert _is_drawn(SimpleNamespace(case=SimpleNamespace(ROLLING="wheel"), textures=textures)) is all_of_it

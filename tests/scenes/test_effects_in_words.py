@@ -24,6 +24,11 @@ def effects_of(effect, error, seeds=3):
         ([-3.4, -2.8, -1.0], [0.3, 0.3, 0.3], "a, −3.4 dB(A). "),
         ([-3.4, -2.8, -2.6], [0.9, 0.9, 0.1], "a, −3.4 dB(A); as much but for chance: b, −2.8; c, −2.6. "),
         ([-3.4, -2.8, -2.6], [9.0, 9.0, 0.1], ""),
+        (
+            [-3.4, -0.5, -0.4],
+            [3.0, 0.9, 0.1],
+            "a, −3.4 dB(A); as much but for chance: c, −0.4. ",
+        ),  # b: not surely
         ([-3.4, -2.8, np.nan], [np.nan, np.nan, np.nan], "a, −3.4 dB(A). "),  # of one seed
     ],
 )

@@ -9,7 +9,6 @@ import numpy as np
 
 from asperity.arguments import Array
 from asperity.case.form import name_of
-from asperity.case.rolled_over import TrackKeys
 from asperity.case.scene import Case
 from asperity.case.tables import MEASURED_WAVE, columns_of_levels
 from asperity.errors import InputError, OutOfRangeWarning
@@ -117,14 +116,12 @@ def doubt_levels(case: Case) -> None:
 
 
 def problems_of_coverage(case: Case, textures: Textures) -> Iterator[InputError]:
-    """Errors about spectra without a wave in any band that counts, as no roughness is measured.
+    """Errors about spectra and lines without a wave in any band that counts, where nothing else is rough.
 
-    Those with waves in few of them are doubted, and lines over a track.
+    Those with waves in few of them are doubted.
     """
     surface = case.surface
-    lines = () if isinstance(case.rolled_over, TrackKeys) else (surface.line, case.rolling.line)
-    others = (surface.file, surface.corrugation, *lines)
-    if case.has_defect or any(other is not None for other in others):
+    if case.has_defect or surface.file is not None or surface.corrugation is not None:
         return
     found = list(coverages(case, textures))
     covered = {float(band) for each in found for band in each.covered}
