@@ -78,6 +78,22 @@ def test_a_fault_on_a_ball_has_a_class_and_several_faults_are_joined():
     assert several["fault_size_mm"] == 3.0
 
 
+def test_a_fault_on_a_roller_is_one_on_a_rolling_element():
+    sizes = {"rollers": 12, "roller_diameter": "7.5 mm", "roller_length": "9 mm", "pitch_diameter": "39 mm"}
+    keys = {
+        "kind": "roller-bearing",
+        "bearing": sizes,
+        "fault": {"on": "roller", "length": "1 mm", "depth": "0.1 mm"},
+    }
+    case = as_case({name: value for name, value in HEALTHY.items() if name != "laws"} | keys)
+    ((row, *_), _) = recording_of(Path("part-a.parquet"), case, np.ones((2, 4)))
+    told = [
+        row[name]
+        for name in ("fault_type", "bearing_model", "bearing_elements", "bearing_element_diameter_mm")
+    ]
+    assert told == ["rolling_element", "12 rollers of 7.5 mm on 39 mm", 12, pytest.approx(7.5)]
+
+
 def test_orders_are_those_of_the_geometry_with_the_spin_of_the_ball_once():
     ((row, *_), _) = rows_of(fault=FAULTS[1])
     ratio = 7.94 / 39.04

@@ -384,7 +384,7 @@ BEARING = [
         ["--signal"],
         type=PATH,
         multiple=True,
-        help="Acceleration of it: .npz, .npy, .mat, .wav or text; more files of it may follow.",
+        help="Acceleration of it: .npz, .npy, .mat, .wav, .uff, .parquet or text; more files may follow.",
     ),
     click.Option(
         ["--rate"],

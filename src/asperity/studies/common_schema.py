@@ -149,12 +149,10 @@ def _about(case: BearingUnderLoad) -> dict[str, Any]:
     fault = max((fault for _, fault in there), key=lambda each: each.length or 0.0, default=None)
     bearing, turning = case.bearing.bearing, case.kinematics
     speed, mean = float(case.speed), covered(case.speed, case.duration) / case.duration
-    names = {"ball_diameter": "balls", "roller_diameter": "rollers"}
-    (name,) = (name for name in names if hasattr(bearing, name))
-    element, diameter = names[name], 1e3 * float(getattr(bearing, name))
+    diameter = 1e3 * bearing.ball_diameter
     pitch = 1e3 * bearing.pitch_diameter
     designation = case.bearing.name or (
-        f"{turning.balls} {element} of {rounded(diameter, 5)} mm on {rounded(pitch, 5)} mm"
+        f"{turning.balls} {case.fault.ELEMENT}s of {rounded(diameter, 5)} mm on {rounded(pitch, 5)} mm"
     )
     sizes = {name: 1e3 * float(getattr(fault, name, None) or 0.0) for name in ("length", "width", "depth")}
     return {
