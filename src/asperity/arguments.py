@@ -5,7 +5,7 @@ import math
 import numbers
 import os
 import stat
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NewType, TypeVar
 
@@ -34,6 +34,16 @@ else:  # names alone: help() would spell out what NumPy makes of them, in a hund
     ArrayLike = NewType("ArrayLike", object)
     Array = NewType("Array", np.ndarray)
     Complex = NewType("Complex", np.ndarray)
+
+
+def as_row(values: "ArrayLike") -> "Array":
+    """Numbers as an array of one dimension or more."""
+    return np.atleast_1d(np.asarray(values, dtype=float))
+
+
+def given_options(options: Mapping[str, Any]) -> dict[str, Any]:
+    """Those options that are given."""
+    return {name: value for name, value in options.items() if value is not None}
 
 
 def require(right: object, what: str, received: object, allowed: str, remedy: str = "") -> None:

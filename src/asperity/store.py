@@ -192,12 +192,14 @@ def _is_file(path: Path) -> bool:
 
 
 def made(
-    cache: Store, key: str, make: Make, meanwhile: Callable[[], object] = lambda: time.sleep(PATIENCE)
+    cache: Store | None, key: str, make: Make, meanwhile: Callable[[], object] = lambda: time.sleep(PATIENCE)
 ) -> dict[str, NDArray[Any]]:
     """Return what a cache keeps under a key; make it first where nobody does, or wait for who makes it.
 
-    `meanwhile` is called as long as another makes it.
+    `meanwhile` is called as long as another makes it. Without a cache it is made.
     """
+    if cache is None:
+        return dict(make())
     while True:
         if (kept := cache.get(key)) is not None:
             return kept

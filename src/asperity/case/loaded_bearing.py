@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from asperity.arguments import given_options
 from asperity.case import toml
 from asperity.case.ball_bearing import BearingUnderLoad
 from asperity.case.bearing_sections import DAMPED, LOAD, LOADS, BearingGeometry
@@ -105,7 +106,7 @@ def read_bearing(source: str, options: Mapping[str, Any]) -> LoadKeys:
         remedy = f"{named_bearings(source)} {RollerGeometry.names_in_words()}"
         definition = toml.read_definition(source, "bearing", remedy)
         keys = _of_case(toml.read_toml(definition, "bearing", source), source, options)
-    typed: dict[str, Any] = {name: value for name, value in options.items() if value is not None}
+    typed = given_options(options)
     if "lubricant" in typed and isinstance(known := keys.get("lubricant"), dict):
         typed["lubricant"] = known | typed["lubricant"]
     return _read(keys | typed, source)

@@ -10,7 +10,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
-from asperity.arguments import Array
+from asperity.arguments import Array, given_options
 from asperity.case import tables
 from asperity.case.body import INERTIA, MASS, PROFILE
 from asperity.case.form import Numbers, Section, name_of
@@ -250,7 +250,7 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
             told["pad_table"] = self._pad
         if self.bay_table is not None:
             told |= dict(zip(LISTED, self._listed.mean(axis=0).tolist(), strict=True))
-        return {name: value for name, value in told.items() if value is not None}
+        return given_options(told)
 
     @property
     def _pad(self) -> StiffnessTable:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from asperity.arguments import given_options
 from asperity.case.form import Section
 from asperity.parameters import Choice, Quantity, key, keys_of, optional
 from asperity.structures.lateral_rail import LateralTrack
@@ -42,5 +43,4 @@ class SidewaysKeys(Section, parameters=keys_of(LateralTrack, otherwise="of a UIC
     def model(self, track: Track, foot_width: float) -> LateralTrack:
         """The track sideways, of a rail with a foot of a width, m: UIC 60 with what the case says of it."""
         told = {name: getattr(self, name) for name in keys_of(LateralTrack, "")}
-        known = {name: value for name, value in told.items() if value is not None}
-        return LateralTrack(track, **known, foot_width=foot_width)
+        return LateralTrack(track, **given_options(told), foot_width=foot_width)

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from asperity.arguments import Array
+from asperity.arguments import Array, given_options
 from asperity.case import surface as recipes
 from asperity.errors import InputError, percent
 from asperity.files import write_bytes
@@ -80,7 +80,7 @@ def show_surface(
 
 def _typed(recipe: Path | None, options: dict[str, Any]) -> dict[str, Any]:
     """Keys of a recipe from a file with the options that are given beside it, or these alone."""
-    given = {name: value for name, value in options.items() if value is not None}
+    given = given_options(options)
     given = {name: value for name, value in given.items() if value is not False or name == "lines"}
     if "crop" in given:
         given["crop"] = [part.strip() for part in given["crop"].split(",")]

@@ -334,7 +334,7 @@ def solved_blocks(
     def block(start: int) -> tuple[Array, Counts]:
         under = job.under(start)
         solve = partial(job.solve, *under)
-        kept = solve() if cache is None else made(cache, job.key(*under), solve, help_along)
+        kept = made(cache, job.key(*under), solve, help_along)
         return kept["forces"], Counts(*kept["counts"].tolist())
 
     with closing(in_order(block, job.starts, min(count, len(job.starts)))) as blocks:

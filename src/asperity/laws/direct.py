@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, NDArray
+from asperity.arguments import Array, ArrayLike, NDArray, as_row
 from asperity.laws import spec
 from asperity.surfaces.edges import FAR, Edges
 
@@ -93,7 +93,7 @@ class Direct:
         (dx, _), half = self.spacing, self.body.shape[0] // 2
         rows = len(self.heights) - 2 * half
         grid_index("texture under the contact window", rows, self.start + half * dx, dx, positions)
-        index = (np.atleast_1d(np.asarray(positions, dtype=np.float64)) - self.start) / dx
+        index = (as_row(positions) - self.start) / dx
         half_space = HalfSpace(self.body.shape, self.spacing, self.modulus, self.hardness, self.cells)
         return DirectOnPath(self, half_space, index - half, other)
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike
+from asperity.arguments import Array, ArrayLike, as_row
 from asperity.kernels.curves import monotone_slopes
 from asperity.kernels.pointforce import SECANT, SHIFTED, TABLE, Prepared, evaluate_all
 from asperity.laws.spec import Law
@@ -26,7 +26,7 @@ def on_curve(
     `SHIFTED`. Without texture the path is smooth. The states of the texture count from the plane, m, by
     default the mean plane.
     """
-    at = np.atleast_1d(np.asarray(positions, dtype=float))
+    at = as_row(positions)
     planes = _plane_at(plane, at)
     states = np.zeros(1) if texture is None else np.ascontiguousarray(texture.approaches, dtype=float)
     values = (np.zeros((at.size, 1)) if texture is None else texture.at(at)) - planes[:, None]
@@ -53,7 +53,7 @@ def on_table(
     g = F^(2/3), negative before first touch, and its monotone slopes at every position. Damping in N s/m; the
     table's approaches count from the plane, m, by default the mean plane.
     """
-    at = np.atleast_1d(np.asarray(positions, dtype=float))
+    at = as_row(positions)
     states = np.ascontiguousarray(table.approaches, dtype=float)
     root, slopes = np.empty((2, at.size, len(states)))
     touches = np.empty(at.size)
@@ -90,7 +90,7 @@ def _straight_to_touch(states: Array, root: Array, touches: Array) -> Array:
 
 def force(law: Law, positions: ArrayLike, approach: ArrayLike) -> Array:
     """Elastic contact force of a law, (n,), N, without damping, at positions (n,) and approaches, m."""
-    at = np.atleast_1d(np.asarray(positions, dtype=float))
+    at = as_row(positions)
     delta = np.ascontiguousarray(np.broadcast_to(np.asarray(approach, dtype=float), at.shape))
     prepared = law.prepare(at)
     if isinstance(prepared, Prepared):

@@ -9,7 +9,7 @@ from typing import Any, Protocol
 import numpy as np
 from xarray import DataTree
 
-from asperity.arguments import Array, NDArray, require, shown
+from asperity.arguments import Array, NDArray, as_row, require, shown
 from asperity.case.any_case import AnyCase
 
 Values = NDArray[np.inexact]
@@ -63,7 +63,7 @@ class Measured:
     records: int = 1
 
     def __post_init__(self) -> None:
-        at = np.atleast_1d(np.asarray(self.at, dtype=float))
+        at = as_row(self.at)
         values = np.atleast_1d(np.asarray(self.values))
         sound = values.dtype.kind in "fiuc" and at.ndim == 1 and at.shape == values.shape and at.size > 0
         allowed = "two arrays of one length, of finite numbers"

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from scipy.linalg import cho_factor, cho_solve
 
-from asperity.arguments import Array, ArrayLike, NDArray, require
+from asperity.arguments import Array, ArrayLike, NDArray, as_row, require
 from asperity.kernels.curves import shape_preserving
 from asperity.reduction.texture import PIECE, LongConvolution, StateTexture
 from asperity.spectra import hann_window
@@ -287,7 +287,7 @@ def punch_taps(semi_axes: ArrayLike, spacing: float) -> Array:
 
     Semi-axes (s,) of the patch in the rolling direction and spacing, m; the taps sum to one.
     """
-    a = np.atleast_1d(np.asarray(semi_axes, dtype=np.float64))[:, None]
+    a = as_row(semi_axes)[:, None]
     half = max(0, math.ceil(float(a.max()) / spacing - 0.5))
     edges = (np.arange(-half, half + 2) - 0.5) * spacing
     return np.diff(np.clip(edges, -a, a), axis=1) / (2.0 * a)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
 
-from asperity.arguments import Array, ArrayLike, require
+from asperity.arguments import Array, ArrayLike, as_row, require
 from asperity.kernels.curves import splines_along
 from asperity.surfaces.strip import Rows, Strip
 from asperity.written_numbers import rounded
@@ -28,7 +28,7 @@ class StateTexture:
 
     def __post_init__(self) -> None:
         heights = np.atleast_2d(np.asarray(self.heights, dtype=float))
-        approaches = np.atleast_1d(np.asarray(self.approaches, dtype=float))
+        approaches = as_row(self.approaches)
         object.__setattr__(self, "heights", heights)
         object.__setattr__(self, "approaches", approaches)
 
@@ -86,7 +86,7 @@ def grid_index(what: str, points: int, start: float, spacing: float, positions: 
 
     Its points begin at `start` and are a spacing apart, m; `what` is known there is for the message.
     """
-    index = (np.atleast_1d(np.asarray(positions, dtype=float)) - start) / spacing
+    index = (as_row(positions) - start) / spacing
     last = points - 1
     slack = 1e-6  # of a spacing: rounding of the positions
     least = index.min()

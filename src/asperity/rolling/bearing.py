@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Self
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from asperity.progress import Progress
 from asperity.rolling.driver import rest_of, roll_mechanism
 from asperity.rolling.ledger import Ledger
 from asperity.rolling.mechanism import Mechanism, RollingContact, Side
-from asperity.rolling.soundness import STILL, steady
+from asperity.rolling.soundness import STILL, without_rounding
 from asperity.rolling.trajectory import Trajectory, Values, at_steps
 from asperity.speeds import SpeedCourse
 from asperity.store import Checkpoint
@@ -104,14 +104,12 @@ class RolledBearing:
             for force in (self.inner_force, self.outer_force)
         )
 
-
-def steady_where_still(run: RolledBearing) -> RolledBearing:
-    """The same, of a run in which nothing vibrates without what rounding leaves of motion and forces."""
-    if run.vibrates:
-        return run
-    names = "inner_force", "outer_force", "ball_motion", "inner_motion", "outer_motion"
-    records: dict[str, Any] = {name: steady(getattr(run, name)) for name in names}
-    return replace(run, **records, acceleration=np.zeros_like(run.acceleration), energy=run.energy.of_nothing)
+    def steadied(self) -> Self:
+        """The same, where nothing vibrates without what rounding leaves of motion and forces."""
+        if self.vibrates:
+            return self
+        names = "inner_force", "outer_force", "ball_motion", "inner_motion", "outer_motion"
+        return without_rounding(self, *names, energy=self.energy.of_nothing)
 
 
 def roll_bearing(

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Self
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, NDArray
+from asperity.arguments import Array, ArrayLike, NDArray, as_row
 from asperity.errors import InputError
 from asperity.kernels import pointforce
 from asperity.laws.spec import Law, SteppedLaw
@@ -19,7 +19,7 @@ from asperity.rolling.course import Course
 from asperity.rolling.driver import RolledMechanism, carried, recorded
 from asperity.rolling.mechanism import Mechanism, RollingContact, Side
 from asperity.rolling.rest import start_rolling
-from asperity.rolling.soundness import STILL, free_motion, refuse_missed_load, steady
+from asperity.rolling.soundness import STILL, free_motion, refuse_missed_load, steady, without_rounding
 from asperity.rolling.stepper import Stepper
 from asperity.rolling.trajectory import Path
 from asperity.speeds import SpeedCourse
@@ -56,6 +56,21 @@ class RolledBodies(RolledMechanism):
             ends = np.flatnonzero(edges == -1)
             found.append((starts * step, (ends - starts) * step))
         return found
+
+    def steadied(self) -> Self:
+        """The same, where nothing vibrates without what rounding leaves of motion and forces."""
+        if any(map(_varies, (self.contact_force, self.over_displacement, self.relative_displacement))):
+            return self
+        energy = self.energy if self.over_displacement.any() else self.energy.of_nothing
+        names = (
+            "contact_force",
+            "history",
+            "relative_displacement",
+            "over_displacement",
+            "rolling_displacement",
+        )
+        moved = tuple(map(steady, self.degrees_of_freedom))
+        return without_rounding(self, *names, degrees_of_freedom=moved, energy=energy)
 
 
 def roll_bodies(
@@ -127,7 +142,7 @@ def roll_bodies(
     if isinstance(over, RailBetween):
         _refuse_changing(speed)
     whole = Path.laid(start, speed, time_step, duration, settling)
-    ahead, seen = (np.atleast_1d(np.asarray(given, dtype=float)) for given in (positions, sensors))
+    ahead, seen = (as_row(given) for given in (positions, sensors))
     path = whole.ahead(offsets_of(bodies, laws, ahead))
     structures = [] if over is None else [over]
     contacts = [
@@ -223,19 +238,3 @@ def in_contact(
 def _varies(record: Array) -> bool:
     """Whether any row of a record (..., n) varies by more than rounding."""
     return bool((np.ptp(record, axis=-1) > STILL * np.abs(record).max(axis=-1)).any())
-
-
-def without_rounding(run: RolledBodies) -> RolledBodies:
-    """The same, of a run in which nothing vibrates without what rounding leaves of motion and forces."""
-    if any(map(_varies, (run.contact_force, run.over_displacement, run.relative_displacement))):
-        return run
-    energy = run.energy if run.over_displacement.any() else run.energy.of_nothing
-    names = "contact_force", "history", "relative_displacement", "over_displacement", "rolling_displacement"
-    records: dict[str, Any] = {name: steady(getattr(run, name)) for name in names}
-    return replace(
-        run,
-        **records,
-        degrees_of_freedom=tuple(map(steady, run.degrees_of_freedom)),
-        acceleration=np.zeros_like(run.acceleration),
-        energy=energy,
-    )

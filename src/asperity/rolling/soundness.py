@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -11,6 +13,7 @@ from asperity.arguments import Array, NDArray
 from asperity.structures.body import Body
 from asperity.written_numbers import engineering, rounded
 
+Run = TypeVar("Run", bound=Any)
 STILL = 1e-9
 """Share of forces and displacements by which they vary where nothing vibrates: each is found to 1e-10."""
 LEAST = 100
@@ -24,6 +27,12 @@ FAR = 10.0
 def steady(record: Array) -> Array:
     """A record (..., n) that keeps its last values throughout."""
     return np.repeat(record[..., -1:], record.shape[-1], axis=-1)
+
+
+def without_rounding(run: Run, *names: str, **others: Any) -> Run:
+    """A run in which nothing vibrates, without what rounding leaves of the records of some names."""
+    records = {name: steady(getattr(run, name)) for name in names}
+    return replace(run, **records, **others, acceleration=np.zeros_like(run.acceleration))
 
 
 def free_motion(body: Body) -> tuple[Array, float, float] | None:

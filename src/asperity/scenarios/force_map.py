@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, FilePath, finite_array, one_of, require
+from asperity.arguments import Array, ArrayLike, FilePath, as_row, finite_array, one_of, require
 from asperity.case.any_case import AnyCase, function_named
 from asperity.case.cases import as_case
 from asperity.errors import InputError
@@ -102,7 +102,7 @@ def force_map(
 
 
 def _rising(what: str, values: ArrayLike) -> Array:
-    found = finite_array(what, np.atleast_1d(np.asarray(values, dtype=float)), shape=(None,))
+    found = finite_array(what, as_row(values), shape=(None,))
     require(bool((np.diff(found) > 0.0).all()), what, "values that do not rise", "values that rise")
     return found
 

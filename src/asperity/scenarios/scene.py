@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, Complex
+from asperity.arguments import Array, ArrayLike, Complex, as_row
 from asperity.case.scene import Case
 from asperity.errors import InputError
 from asperity.scenarios.geometry import Geometry
@@ -166,8 +166,8 @@ def force_transfer(
     α_W. Frequencies (f,), Hz, zero or above: at zero the force is zero, since the wheel is free. Stiffness of
     the contact at the static load, N/m, infinite for a rigid one; positions (n,), m from a sleeper.
     """
-    f = np.atleast_1d(np.asarray(frequency, dtype=float))
-    positions = np.atleast_1d(np.asarray(x, dtype=float))
+    f = as_row(frequency)
+    positions = as_row(x)
     moving = f > 0.0
     transfer = np.zeros((positions.size, f.size), dtype=complex)
     carried = wheel(f[moving]) + 1.0 / stiffness

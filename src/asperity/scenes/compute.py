@@ -18,7 +18,7 @@ from asperity.contact.scan import ScannedForces
 from asperity.laws import Need, Role, in_role, names, needs_of, spec_of
 from asperity.progress import Progress
 from asperity.radiation.passing import passed_points
-from asperity.rolling.roll import RolledBodies, roll_bodies, without_rounding
+from asperity.rolling.roll import RolledBodies, roll_bodies
 from asperity.scenarios import compiling
 from asperity.scenarios.laws import ReducedCase, reduced_case, working_point
 from asperity.scenarios.running_in import run_in_case
@@ -143,7 +143,7 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
             progress=progress,
             checkpoint=checkpoint_of(name, case, lambda: _heights_of(prepared), store),
         )
-        return without_rounding(run)
+        return run.steadied()
 
     visited = partial(_visited, len(every))
     runs: dict[str, RolledBodies] = {}

@@ -21,7 +21,6 @@ from asperity.rolling.bearing import (
     RolledBearing,
     Sensor,
     roll_bearing,
-    steady_where_still,
 )
 from asperity.scenarios.prepared_bearing import (
     ON,
@@ -125,7 +124,7 @@ def compute_bearing(prepared: PreparedBearing, progress: Progress) -> ComputedBe
         signals: dict[str, Any] = {each: thinned(getattr(run, each), every) for each in SIGNALS}
         signals |= {each: np.maximum(signals[each], getattr(run, each).min()) for each in FORCES}
         found[name] = replace(run, time=run.time[::every], cage=run.cage[::every], **signals)
-    runs = {name: steady_where_still(run) for name, run in found.items()}
+    runs = {name: run.steadied() for name, run in found.items()}
     return ComputedBearing(**vars(prepared), runs=runs, rolled=found)
 
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import xarray
 
-from asperity.arguments import Array, ArrayLike, Complex, NDArray
+from asperity.arguments import Array, ArrayLike, Complex, NDArray, as_row
 from asperity.case.measured import read_band_levels, read_decay_rates, read_mobility
 from asperity.case.rolled_over import TrackKeys
 from asperity.case.sections import NoiseKeys
@@ -118,7 +118,7 @@ class HammerTest:
 
 def _lines_in(band: ArrayLike, count: int = LINES) -> Array:
     """Frequencies of each band (b, count), even over lg f, Hz."""
-    centre = np.atleast_1d(np.asarray(band, dtype=float))
+    centre = as_row(band)
     steps = (np.arange(count) + 0.5) / count
     return centre[:, None] * HALF_BAND ** (2.0 * steps - 1.0)
 

@@ -11,7 +11,7 @@ import numpy as np
 import scipy
 from numpy.polynomial.legendre import leggauss
 
-from asperity.arguments import Array, ArrayLike, one_of, positive, real, require
+from asperity.arguments import Array, ArrayLike, as_row, one_of, positive, real, require
 from asperity.errors import InputError
 from asperity.kernels.curves import STRIDE, add_near_fields
 from asperity.reference.materials import Material
@@ -239,7 +239,7 @@ class Beam(_Uniform):
 
         A sinusoid, or the straight line of a rigid mode, and the exponentials that rise and fall with x.
         """
-        at = np.atleast_1d(np.asarray(x, dtype=float))
+        at = as_row(x)
         if at.min() < -1e-9 * self.length or at.max() > self.length * (1.0 + 1e-9):
             received = f"{at.min():.6g} to {at.max():.6g}"
             raise InputError("positions on the beam (m)", received, f"0 to {self.length:.6g}")

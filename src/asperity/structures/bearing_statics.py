@@ -169,6 +169,11 @@ def speed_of_leaving(all_touch: Callable[[float], bool], fastest: float) -> floa
     return high
 
 
+def angles_of_cage(given: ArrayLike) -> Array:
+    """Angles of the first ball or roller (m,), rad."""
+    return finite_array("angles of the cage (rad)", np.atleast_1d(np.asarray(given)), shape=(None,))
+
+
 def load_distribution(
     bearing: BallBearing, radial: float, axial: float, speed: float, cage_angles: ArrayLike | None
 ) -> LoadedBearing:
@@ -182,7 +187,7 @@ def load_distribution(
     require(held, "load", "none", allowed, remedy)
     if cage_angles is None:
         cage_angles = 2.0 * math.pi / bearing.balls * np.arange(STEPS) / STEPS
-    angles = finite_array("angles of the cage (rad)", np.atleast_1d(np.asarray(cage_angles)), shape=(None,))
+    angles = angles_of_cage(cage_angles)
     try:
         found = _solved(bearing, radial, preloaded, speed, angles)
         _doubt(found)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, NDArray, finite_array, positive
+from asperity.arguments import Array, ArrayLike, NDArray, as_row, finite_array, positive
 from asperity.errors import InputError
 from asperity.written_numbers import in_newtons
 
@@ -103,7 +103,7 @@ class Body:
 
         Frequencies in Hz, above zero.
         """
-        f = np.atleast_1d(np.asarray(frequency, dtype=float))
+        f = as_row(frequency)
         _refuse_rest(f)
         omega = 2.0 * np.pi * f[:, None, None]
         dynamic = self.stiffness + 1j * omega * self.damping - omega**2 * self.mass

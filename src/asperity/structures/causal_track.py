@@ -82,7 +82,7 @@ def _relaxations(track: Track, cache: Store | None) -> Relaxations:
         return {part: np.array([r.static, *r.strengths]) for part, r in found.items() if r is not None}
 
     key = content_key("causal-track", track.parameters, CHOICES)
-    kept = make() if cache is None else made(cache, key, make)
+    kept = made(cache, key, make)
     plain = {part: values.tolist() for part, values in kept.items()}
     return Relaxations(**{part: Relaxation(c[0], tuple(c[1:]), FREQUENCIES) for part, c in plain.items()})
 

@@ -9,7 +9,17 @@ from typing import NamedTuple, Protocol
 import numpy as np
 import scipy
 
-from asperity.arguments import Array, ArrayLike, Complex, finite_array, positive, real, real_array, require
+from asperity.arguments import (
+    Array,
+    ArrayLike,
+    Complex,
+    as_row,
+    finite_array,
+    positive,
+    real,
+    real_array,
+    require,
+)
 from asperity.errors import CoarseSamplingWarning, InputError
 from asperity.kernels.curves import evaluate_pieces, turn_on
 from asperity.written_numbers import count_of, rounded
@@ -161,7 +171,7 @@ def pieces_of(spline: "scipy.interpolate.BSpline") -> Pieces:
 
 def shapes_at(pieces: Pieces, x: ArrayLike) -> tuple[Array, Array]:
     """Shapes and slopes (n, modes) at positions, m; an `InputError` where one lies beyond the breaks."""
-    at = np.ascontiguousarray(np.atleast_1d(np.asarray(x, dtype=float)))
+    at = np.ascontiguousarray(as_row(x))
     first = float(pieces.breaks[0])
     last = float(pieces.breaks[-1])
     slack = 1e-9 * (last - first)

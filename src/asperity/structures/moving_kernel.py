@@ -165,7 +165,7 @@ def moving_kernel(
             length = min(1.6 * length, LONGEST)
         return {"weights": kernel.weights}
 
-    kept = make() if cache is None else made(cache, key, make)
+    kept = made(cache, key, make)
     kernel = MovingKernel(track, speed, time_step, kept["weights"], distance)
     if duration is None and kernel.left_over > DIED_AWAY:
         CoarseSamplingWarning.warn(

@@ -114,7 +114,7 @@ def rail_poles(kernel: MovingKernel, count: int = 100, *, cache: Store | None = 
         static = np.abs(left.sum(axis=1) / kernel.weights.sum(axis=1)).max()
         return {"poles": poles, "residues": residues, "errors": np.array([error, static])}
 
-    kept = make() if cache is None else made(cache, key, make)
+    kept = made(cache, key, make)
     error, static = kept["errors"].tolist()
     if not np.isfinite(error):
         raise ComputationError("the fit of the moving kernel by poles broke down", "fewer poles")

@@ -11,7 +11,7 @@ import numpy as np
 from asperity.arguments import Array, ArrayLike, finite_array, not_negative, require
 from asperity.contact.slices import EXPONENT, SlicedContact
 from asperity.errors import ComputationError, Grade, InputError, OutOfRangeWarning, percent
-from asperity.structures.bearing_statics import STEPS, speed_of_leaving
+from asperity.structures.bearing_statics import STEPS, angles_of_cage, speed_of_leaving
 from asperity.structures.least_energy import TOLERANCE, least_energy
 from asperity.structures.roller_bearing import RollerBearing
 from asperity.written_numbers import rounded
@@ -198,7 +198,7 @@ def roller_load_distribution(
     require(held, "load", "none", "a radial or axial load, a moment, a tilt or an interference", remedy)
     if cage_angles is None:
         cage_angles = 2.0 * math.pi / bearing.rollers * np.arange(STEPS) / STEPS
-    angles = finite_array("angles of the cage (rad)", np.atleast_1d(np.asarray(cage_angles)), shape=(None,))
+    angles = angles_of_cage(cage_angles)
     load = np.array([radial, 0.0, axial, *moments])
     prescribed = tilted if moment is None else None
     try:

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, finite_array
+from asperity.arguments import Array, ArrayLike, as_row, finite_array
 from asperity.files import write_bytes
 from asperity.structures.roller_bearing import AnyBearing
 from asperity.text_files import write_csv
@@ -189,7 +189,7 @@ def stiffness_table(
         Of a combination that the bearing does not carry, as its `loaded` says it.
     """
     axes = [
-        finite_array(what, np.atleast_1d(np.asarray(values, dtype=float)), shape=(None,))
+        finite_array(what, as_row(values), shape=(None,))
         for what, values in (("radial load (N)", radial), ("axial load (N)", axial), ("speed (1/s)", speed))
     ]
     angles = None

@@ -343,7 +343,7 @@ def wheel_modes(
 
     numbers = [material.youngs_modulus, material.poisson_ratio, material.density, highest, size]
     key = content_key("wheel-modes", FORMAT, section, numbers)
-    found = make() if cache is None else made(cache, key, make)
+    found = made(cache, key, make)
     order = np.argsort(found["frequency"], kind="stable")
     names = ("radial", "axial", "disc", "tread")
     shapes = {name: found[name][order] for name in names}

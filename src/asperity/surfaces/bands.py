@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, NDArray, require
+from asperity.arguments import Array, ArrayLike, NDArray, as_row, require
 from asperity.spectra import HALF_BAND, band_levels, psd
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.strip import places_across
@@ -308,7 +308,7 @@ def band_texture(
     around: float | None = None,
 ) -> BandTexture:
     """Surface of one-third-octave levels, drawn; see `strip_from_bands`, and `BandTexture` for the rest."""
-    given, levels = (np.atleast_1d(np.asarray(each, dtype=np.float64)) for each in (wavelengths, levels_db))
+    given, levels = (as_row(each) for each in (wavelengths, levels_db))
     _wavenumber_bands(given, levels)
     return BandTexture(tuple(given.tolist()), tuple(levels.tolist()), lateral, seed, finest, around)
 
@@ -319,7 +319,7 @@ def range_of_bands(wavelengths: ArrayLike) -> str:
 
 
 def _wavenumber_bands(wavelengths: ArrayLike, levels_db: ArrayLike) -> tuple[Array, Array, Array, Array]:
-    given, levels = (np.atleast_1d(np.asarray(each, dtype=np.float64)) for each in (wavelengths, levels_db))
+    given, levels = (as_row(each) for each in (wavelengths, levels_db))
     centres = 10.0 ** (np.rint(-10.0 * np.log10(given)) / 10.0)
     near = np.abs(given * centres - 1.0) < 0.03  # nominal ones lie within 2.4 % of the exact ones
     right = near.all() and np.unique(centres).size == centres.size
