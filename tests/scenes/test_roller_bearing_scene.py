@@ -52,6 +52,21 @@ def test_waves_are_felt_as_under_a_flat_punch_of_the_half_width(order):
     assert np.ptp(wider) == pytest.approx(2e-7 * abs(j0(2.0 * order / RADIUS * half_width)), rel=1e-3)
 
 
+def test_of_a_wave_few_states_are_laid_out_and_what_lies_between_them_is_not_missed():
+    """J₀(kb) is nearly straight over the approach: b² grows with the load, that as δ^(10/9)."""
+    texture = AroundTexture(waves=(30,), amplitudes=(1e-7,))
+    on = on_surface(STRAIGHT, surface_on(STRAIGHT, LOAD, RADIUS, texture), LOAD)
+    laid_out = on.build("areal").law.texture
+    assert 2 < len(laid_out.approaches) < len(on.approaches) / 3
+    axes = [STRAIGHT.semi_axes(each) for each in on.approaches]
+    every = -on.averaged(on.wavy, axes)
+    beyond = (laid_out.heights.shape[1] - on.rows) // 2
+    heights = laid_out.heights[:, beyond:-beyond]
+    between = np.array([np.interp(on.approaches, laid_out.approaches, each) for each in heights.T]).T
+    assert np.abs(between - every).max() < 2e-5 * 1e-7
+    assert np.ptp(every, axis=0).max() > 1e-9  # they are unlike
+
+
 def test_the_force_of_the_law_is_that_of_all_slices():
     """Between its knots, too, but for the kinks where slices begin to touch one by one."""
     crowned = SlicedContact(113e9, 3e-3, Crowning.iso(8e-3, 7.5e-3))
