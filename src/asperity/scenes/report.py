@@ -382,10 +382,10 @@ def names_of(results: Sequence[object]) -> list[str]:
     """Call each run as its folder or file, with as much of the path as tells all apart."""
     paths = [_place(result, number) for number, result in enumerate(results, 1)]
     for depth in range(1, max(map(len, paths)) + 1):
-        found = ["/".join(parts[-depth:]) for parts in paths]
+        found = [Path(*parts[-depth:]).as_posix() for parts in paths]
         if len(set(found)) == len(found):
             return found
-    return [f"{name} ({number})" for number, name in enumerate(found, 1)]
+    return [f"{parts[-1]} ({number})" for number, parts in enumerate(paths, 1)]  # one of them twice
 
 
 def _place(result: object, number: int) -> tuple[str, ...]:
