@@ -54,7 +54,7 @@ def test_waves_are_felt_as_under_a_flat_punch_of_the_half_width(order):
 
 def test_of_a_wave_few_states_are_laid_out_and_what_lies_between_them_is_not_missed():
     """J₀(kb) is nearly straight over the approach: b² grows with the load, that as δ^(10/9)."""
-    texture = AroundTexture(waves=(30,), amplitudes=(1e-7,))
+    texture = AroundTexture(waves=(12,), amplitudes=(1e-7,))
     on = on_surface(STRAIGHT, surface_on(STRAIGHT, LOAD, RADIUS, texture), LOAD)
     laid_out = on.build("areal").law.texture
     assert 2 < len(laid_out.approaches) < len(on.approaches) / 3
