@@ -50,8 +50,9 @@ def test_another_program_reads_signals_to_their_digits_with_units_and_places(tmp
     assert [units[name] for name in ("type", "length", "force")] == [164, 1.0, 1.0]
     words = [each["id1"].strip() for each in sets]
     assert words == [
-        *("contact_force, hertz",) * 2, *("contact_force, linear",) * 2,
-        "acceleration, hertz", "acceleration, linear", "tacho_speed", "force_psd, hertz", "force_psd, linear",
+        *("contact_force by hertz",) * 2, *("contact_force by linear",) * 2,
+        "acceleration by hertz", "acceleration by linear", "tacho_speed",
+        "force_psd by hertz", "force_psd by linear",
     ]  # fmt: skip
     first = sets[0]
     np.testing.assert_allclose(first["data"], FORCE[0], rtol=5e-13)
@@ -73,15 +74,15 @@ def test_another_program_reads_signals_to_their_digits_with_units_and_places(tmp
 
 def test_the_package_reads_its_own_universal_file_by_names(tmp_path):
     (file,) = asperity.write_signals(result(), tmp_path)
-    read = read_record(file, array="contact_force, linear 2")
+    read = read_record(file, array="contact_force by linear 2")
     assert read.rate == pytest.approx(RATE, rel=1e-6)
     np.testing.assert_allclose(read.values, 2.0 * FORCE[1], rtol=5e-13)
     with pytest.raises(
-        asperity.errors.InputError, match="received contact_force, hertz 1, contact_force, hertz 2"
+        asperity.errors.InputError, match="received contact_force by hertz 1, contact_force by hertz 2"
     ):
         read_record(file)
-    with pytest.raises(asperity.errors.InputError, match="received 'force_psd, hertz'; allowed: one of: "):
-        read_record(file, array="force_psd, hertz")
+    with pytest.raises(asperity.errors.InputError, match="received 'force_psd by hertz'; allowed: one of: "):
+        read_record(file, array="force_psd by hertz")
 
 
 def test_binary_universal_files_and_uneven_times_are_read(tmp_path):
@@ -120,7 +121,7 @@ def test_wav_files_hold_every_signal_at_its_rate_and_say_what_full_scale_is(tmp_
         )
         told = json.loads(text.partition(b"ICMT")[2][4:].rstrip(b"\0"))
         assert told["full_scale"] == pytest.approx(abs(signal).max(), rel=1e-12)
-        assert [told[name] for name in ("at", "unit", "what")] == [2**23 - 1, "N", "contact_force, hertz"]
+        assert [told[name] for name in ("at", "unit", "what")] == [2**23 - 1, "N", "contact_force by hertz"]
 
 
 @pytest.mark.parametrize("bits", [16, 24])
@@ -159,7 +160,7 @@ def test_words_of_a_universal_file_are_plain_and_short():
 
 def test_real_runs_are_written_with_their_tacho(real_runs, tmp_path):
     (file,) = asperity.write_signals(real_runs["wheel-on-rail"], tmp_path)
-    words = {each["id1"].strip().partition(",")[0] for each in opened(file)[1:]}
+    words = {each["id1"].strip().partition(" by ")[0] for each in opened(file)[1:]}
     assert {"contact_force", "momentary_speed", "point_velocity", "pass_by_pressure", "force_psd"} <= words
     (one,) = asperity.write_signals(
         real_runs["wheel-on-rail"], tmp_path, what="rail_displacement", format="wav"

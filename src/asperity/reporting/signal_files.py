@@ -24,6 +24,8 @@ USUAL = ("N", "m/s2", "m/s", "Pa", "Hz")
 BITS = 24
 """Of a sample in WAV: the static part of a force takes the upper ones."""
 FREQUENCY = "frequency"
+BY = " by "
+"""What stands between a variable and its law in the name of a signal."""
 
 
 def write_signals(
@@ -89,7 +91,7 @@ def write_signals(
     ]
     rows = [
         [
-            file, each.name.partition(",")[0], *each.about, _unit(each), each.step,
+            file, each.name.partition(BY)[0], *each.about, _unit(each), each.step,
             "Hz" if each.is_spectrum else "s", len(each.values), _largest(each),
         ]
         for file, each in zip(files, channels, strict=True)
@@ -119,7 +121,7 @@ def _unit(channel: Channel) -> str:
 
 
 def _file_name(channel: Channel) -> str:
-    name, _, law = channel.name.partition(", ")
+    name, _, law = channel.name.partition(BY)
     return Sound(name, law, channel.about[2], channel.unit, channel.values).file_name
 
 
@@ -166,7 +168,7 @@ def _channels(values: DataArray) -> Iterator[Channel]:
         law = str(one[LAW.name].item()) if LAW.name in others else ""
         places = {dim: n for dim, n in zip(others, index, strict=True) if dim != LAW.name}
         words = ", ".join(_place(values, dim, n) for dim, n in places.items())
-        name = ", ".join(filter(None, (str(values.name), law)))
+        name = BY.join(filter(None, (str(values.name), law)))
         number = (
             1 + int(np.ravel_multi_index(tuple(places.values()), [values.sizes[d] for d in places]))
             if places
