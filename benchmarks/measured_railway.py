@@ -244,19 +244,20 @@ def hammered_askew(keys, sideways):
     """
     told = dict(keys)
     place, slope = (told.pop(name) for name in ASKEW)
-    moved = np.array([slope, place + slope * sideways[1]])
+    receptances, track = sideways
+    moved = np.array([1.0, slope]) @ track.contact_shapes(place)
     frequency = lines_of_bands()
     waves = tracks_of(told)[0].waves(2.0 * np.pi * frequency.ravel())
     own = np.array([waves.receptance(0.3 + x, 0.3) for x in DISTANCES])
-    beside = np.einsum("a,xabf,b->xf", moved, sideways[0], moved)
+    beside = np.einsum("a,xabf,b->xf", moved, receptances, moved)
     return in_bands(DISTANCES, own + beside, frequency)
 
 
 def sideways_motion(keys):
-    """Receptances of a rail sideways at the distances of EN 15461 (x, 2, 2, f), and the head's height."""
+    """Receptances of a rail sideways at the distances of EN 15461 (x, m, m, f), and the rail."""
     track = sideways_track(keys)
     waves = track.waves(2.0 * np.pi * lines_of_bands().ravel())
-    return np.stack([waves.receptance(0.3 + x, 0.3) for x in DISTANCES]), track.head_height
+    return waves.receptances(0.3 + DISTANCES, 0.3), track
 
 
 def tracks_of(keys, kind="rigid", **more):
