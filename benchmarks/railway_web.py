@@ -3,12 +3,12 @@
 Head and foot bend by Timoshenko and twist, each by itself; the web between them is a strip of plate across
 the rail, clamped into both, with its mass. Held rigid it leaves a rail that bends and twists as a whole, and
 cannot warp freely: then head and foot bend against each other. The whole is written a second time, beside
-`asperity.structures.lateral_rail`, whose section keeps its form and warps freely.
+`asperity.structures.rail_web`.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -132,7 +132,7 @@ def head_over_distance(track: LateralTrack, frequency, distances, place=TOP, sti
     omega, spacing = 2.0 * np.pi * frequency, track.track.sleeper_spacing
     losses = np.broadcast_to(track.track.rail.losses.at(omega), omega.shape)
     k, shapes, amplitudes = free_waves(omega, losses, stiffer)
-    support = track.support(omega)
+    support = replace(track, web_thickness=np.inf).support(omega)
     sideways = support[0, 0]
     rolls = support[1, 1] - track.foot_depth**2 * sideways
     below = shapes[:, FOOT_MOVES] - FOOT * shapes[:, FOOT_TWIST]

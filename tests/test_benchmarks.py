@@ -103,9 +103,22 @@ def test_a_hammer_that_strikes_straight_hears_the_vertical_waves_alone():
     """One 10 mm off that leans by 0.1 finds rates between those up and down and sideways at 500 Hz."""
     keys = {name: first for name, (*_, first) in railway.FREE.items()}
     sideways = keys | {name: first for name, (*_, first) in railway.SIDEWAYS.items()}
-    motion, straight = railway.sideways_motion(sideways), {"place": 0.0, "slope": 0.0}
+    motion = railway.sideways_motion(railway.sideways_track(sideways))
+    straight = {"place": 0.0, "slope": 0.0}
     plain = railway.hammered(railway.tracks_of(keys))
     np.testing.assert_allclose(railway.hammered_askew(keys | straight, motion), plain, rtol=1e-9)
     askew = railway.hammered_askew(keys | {"place": 0.01, "slope": 0.1}, motion)
     beside, at = railway.lateral_rates(sideways), int(np.argmin(np.abs(railway.CENTRES - 500.0)))
     assert 2.0 * beside[at] < askew[at] < 0.8 * plain[at]
+
+
+def test_seats_that_move_by_half_have_four_times_the_modal_mass():
+    """Of a force on both alike and of one against the other; sleepers as a whole, and their turn, stay."""
+    even, heavier = railway.sleepers(0.03), railway.sleepers(0.03, 4.0)
+    for plain, heavy in zip(even, heavier, strict=True):
+        share = np.array(heavy.modal_masses) / plain.modal_masses
+        assert share == pytest.approx([1.0] + [4.0] * (len(share) - 1))
+        assert heavy.natural_frequencies == plain.natural_frequencies
+    given = {"sleeper_loss_factor": 0.03, "modal_masses": 4.0}
+    tracks = railway.tracks_of({"pad_stiffness": 9e8} | given, railway.KINDS[2])
+    assert [each.measured_sleeper for each in tracks] == heavier

@@ -177,7 +177,7 @@ test_bad_questions_are_refused = refusals(
 )
 
 
-SIDEWAYS = LateralTrack(Track.named("nordborg-loss-factor", rail_loss_factor=0.05))
+SIDEWAYS = LateralTrack(Track.named("nordborg-loss-factor", rail_loss_factor=0.05), web_thickness=math.inf)
 SIDE = SideOfRail(0.172, 0.150, 0.072)
 
 

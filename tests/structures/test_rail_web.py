@@ -22,7 +22,8 @@ from refusals import refusals
 from small_cases import HEARD
 
 UIC60 = Track.named("uic60")
-RAIL = LateralTrack(UIC60, web_thickness=16.5e-3)
+RAIL = LateralTrack(UIC60)
+KEEPS = LateralTrack(UIC60, web_thickness=math.inf)
 SECTION = RAIL.section
 OMEGA = 2.0 * np.pi * np.array([40.0, 250.0, 700.0, 2000.0, 5000.0])
 
@@ -49,7 +50,7 @@ def test_a_stiff_web_leaves_the_rail_that_keeps_its_form():
     flat = {"foot_centroid": 1e-8, "web_depth": 0.0, "head_centroid": 0.1, "polar_inertia": 0.4}
     track = LateralTrack(replace(UIC60, rail_loss_factor=0.05), web_thickness=16.5e-3, **flat)
     stiff = replace(track.section, web_stiffness=1e7 * track.section.web_stiffness)
-    own = {"shear_stiffness": track.section.beams.shear_stiffness[1], "web_thickness": None}
+    own = {"shear_stiffness": track.section.beams.shear_stiffness[1], "web_thickness": math.inf}
     usual = dict.fromkeys(("foot_centroid", "web_depth", "head_centroid"))
     keeps = replace(track, **own, **{name: getattr(LateralTrack, name) for name in usual})
     expected = keeps.free_waves(OMEGA)
@@ -121,11 +122,10 @@ def test_motion_over_the_height_is_squared_and_averaged():
 
 def test_supports_hold_the_foot():
     """Its bottom sideways and its own twist, as stiff as those of a rail that keeps its form."""
-    keeps = LateralTrack(UIC60)
-    plain, found = keeps.support(OMEGA), RAIL.support(OMEGA)
+    plain, found = KEEPS.support(OMEGA), RAIL.support(OMEGA)
     below = SECTION.heights[1] - SECTION.heights[0]
     sideways = plain[0, 0]
-    roll = plain[1, 1] - keeps.foot_depth**2 * sideways
+    roll = plain[1, 1] - KEEPS.foot_depth**2 * sideways
     assert np.all(found[:2] == 0.0)
     expected = [[sideways, -below * sideways], [-below * sideways, below**2 * sideways + roll]]
     assert_allclose(found[2:, 2:], expected, rtol=1e-9)
@@ -161,7 +161,7 @@ def test_free_waves_are_those_of_printed_finite_elements():
     found = np.concatenate(waves_at_printed(replace(RAIL, track=lossless)))
     assert found == pytest.approx(1.0, abs=0.08)
     assert np.median(np.abs(found - 1.0)) < 0.025
-    bends = [each[0] for each in waves_at_printed(LateralTrack(lossless))]
+    bends = [each[0] for each in waves_at_printed(replace(KEEPS, track=lossless))]
     assert max(bends[1:]) < 0.75
 
 
@@ -174,11 +174,46 @@ def test_a_case_whose_web_bends_finds_its_rates_and_its_force():
     asked = Measured("lateral decay rate", at, at)
     predicted = observable("lateral decay rate").predict(TriedCase(case, {}), asked)
     assert_allclose(predicted, lateral_hammer_test(rail, at), rtol=1e-12)
+    stiff = case.with_(sideways={"web_thickness": "inf"})
+    assert stiff.sideways.model(stiff.track.model(), 0.15).section is None
     thicker = TriedCase(case, {"sideways.web_thickness": 0.0165})
     assert np.all(np.abs(observable("lateral decay rate").predict(thicker, asked) / predicted - 1.0) > 1e-3)
     rolled = SimpleNamespace(case=case, track=SimpleNamespace(nominal=case.track.model()))
     found = Sideways(rolled).rail(at, 0.2)
     assert_allclose(found, rail.answers(2.0 * np.pi * at, 0.2, 0.2, 0.005), rtol=1e-12)
+
+
+def test_a_lateral_hammer_test_sums_the_responses_of_a_band():
+    """1/rate = sum |A|²/|A_0|² Δx/4.343 in each line, meant by the squares of the mobility at the hammer."""
+    lines = 1000.0 * 10.0 ** (0.1 * (np.array([1.0, 3.0, 5.0]) / 6.0 - 0.5))
+    distances, motion = RAIL.hammered(lines)
+    reached = np.diff(0.5 * (distances[1:] + distances[:-1]), prepend=0.0)
+    reached = np.append(reached, 2.0 * (distances[-1] - np.sum(reached)))
+    length = np.log(10.0) / 10.0 * reached @ np.abs(motion / motion[0]) ** 2
+    expected = 1.0 / np.average(length, weights=np.abs(lines * motion[0]) ** 2)
+    assert lateral_hammer_test(RAIL, [1000.0], 3) == pytest.approx([expected], rel=1e-9)
+
+
+SECTION_KEYS = (
+    *("bending_stiffness", "rotary_inertia", "torsional_stiffness", "polar_inertia"),
+    *("head_height", "foot_depth", "centroid_height"),
+)
+OTHERS = (
+    *({name: 1.1 * getattr(LateralTrack, name)} for name in SECTION_KEYS),
+    {"shear_stiffness": math.inf},
+)
+
+
+def test_the_web_of_a_rail_that_is_a_uic_60_bends():
+    """16.5 mm, as printed of 60E1; a rail of another mass or of another section keeps its form."""
+    heavier, own = (
+        replace(UIC60, mass_per_length=68.0),
+        replace(UIC60, mass_per_length=60.0, pad_stiffness=9e8),
+    )
+    assert RAIL.web == LateralTrack(own, pad_stiffness=6e7, ballast_stiffness=1e8).web == 16.5e-3
+    assert LateralTrack(heavier, web_thickness=14e-3, polar_inertia=0.5).web == 14e-3
+    others = LateralTrack(heavier), KEEPS, *(LateralTrack(own, **each) for each in OTHERS)
+    assert [each.section for each in others] == [None] * len(others)
 
 
 def refused(**changes):
@@ -187,6 +222,8 @@ def refused(**changes):
 
 test_sections_that_cannot_be_are_refused = refusals(
     (refused(web_height=0.08), r"web_height: received 0.08; allowed: only together with web_thickness"),
+    (refused(web_thickness=math.inf, head_centroid=0.09), "head_centroid: received 0.09; allowed: only tog"),
+    (refused(web_thickness=-1e-3), 'web_thickness of the lateral track: received -0.001; .* or "inf"'),
     (
         refused(web_thickness=0.0165, head_centroid=0.06),
         r"web bends: received heights above the centre of twist of -48, -37, -16.5, 73, 60, 124 mm; "

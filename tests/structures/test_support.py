@@ -189,6 +189,43 @@ def test_a_sleeper_that_loses_is_causal_passive_and_takes_its_part_of_the_power(
     assert parts["sleeper"].max() > 0.01 * fed.max()
 
 
+@pytest.mark.parametrize("factor", [0.02, 0.1, 0.35])
+def test_a_pad_that_stiffens_keeps_its_loss_factor(factor):
+    """Its phase everywhere, and by Bode's relation of gain and phase the exponent; 300 Hz is nominal."""
+    track = Track.named("uic60", pad_stiffness=2e8, pad_loss_factor=factor, pad_stiffens=True)
+    pad, at = track.springs["pad"], np.array([5.0, 41.0, 300.0, 1234.0, 5000.0, 20000.0])
+    found = pad.stiffness(2.0 * np.pi * at)
+    np.testing.assert_allclose(found.imag / found.real, factor, rtol=1e-6)
+    exponent = np.angle(1.0 + 1j * factor) / (0.5 * np.pi)
+    np.testing.assert_allclose(found.real, 2e8 * (at / 300.0) ** exponent, rtol=5e-4)
+    np.testing.assert_allclose(pad.stiffness(2.0 * np.pi * np.array([0.1])), found[:1], rtol=1e-12)
+    assert track.support.elements[0].at_rest.nominal == pytest.approx(found[0].real)
+
+
+def test_a_pad_that_stiffens_is_met_by_relaxing_elements_better_than_one_that_does_not():
+    """What is causal can be approximated: 50 Hz to 3 kHz are missed by a quarter at most of the other."""
+    keys, at = {"pad_stiffness": 5e8, "pad_loss_factor": 0.35}, 2.0 * np.pi * np.geomspace(50.0, 3000.0, 30)
+    missed = []
+    for stiffens in (True, False):
+        track = Track.named("uic60", **keys, pad_stiffens=stiffens)
+        assert not track.is_causal
+        found, aim = (each.springs["pad"].stiffness(at) for each in (causal_track(track), track))
+        missed.append(np.abs(found / aim - 1.0).max())
+    assert missed[0] < 0.25 * missed[1]
+
+
+test_pads_that_cannot_stiffen_are_refused = refusals(
+    (
+        lambda: Track.named("uic60", pad_stiffens=True),
+        "pad_stiffens: received True; allowed: only together with pad_loss_factor",
+    ),
+    (
+        lambda: Track.named("uic60", pad_stiffens=True, pad_damping=1e4),
+        "pad_stiffens: received True; allowed: only together with pad_loss_factor",
+    ),
+)
+
+
 test_sleepers_that_cannot_be_are_refused = refusals(
     (np.where(FREQUENCY < 300.0, 1.0, 1.0 + 0.2j), "imaginary part above zero from 3.* to 6000 Hz, by which"),
     (np.where(FREQUENCY < 300.0, 1.0, 0.0), "size of a receptance"),

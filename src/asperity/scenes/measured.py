@@ -18,7 +18,7 @@ from asperity.scenes import compute, schema
 from asperity.schema import Values, spectra
 from asperity.spectra import HALF_BAND, nominal_frequency
 from asperity.structures.lateral_rail import LateralTrack
-from asperity.structures.track import Track, decay_rate_en15461
+from asperity.structures.track import Track, decay_rate_en15461, decay_rate_of_responses
 from asperity.surfaces.bands import likely_band
 from asperity.written_numbers import count_of, rounded
 
@@ -135,10 +135,9 @@ def lateral_hammer_test(track: LateralTrack, band: ArrayLike, count: int = LINES
     In bands by their centres (b,), Hz, each summed at a count of lines.
     """
     frequency = _lines_in(band, count)
-    half = 0.5 * track.track.sleeper_spacing
-    lines = frequency.ravel()
-    mobility = (lines * track.receptance(lines, half, half)).reshape(frequency.shape)
-    return _rate_in_bands(track.decay_rate_en15461(lines), mobility)
+    distances, motion = track.hammered(frequency.ravel())
+    rate = decay_rate_of_responses(distances, np.abs(motion))
+    return _rate_in_bands(rate, frequency * motion[0].reshape(frequency.shape))
 
 
 def lateral_rates(keys: TrackKeys, track: LateralTrack, band: Array) -> tuple[Values, Array | float]:

@@ -1,5 +1,6 @@
 """What a rail sideways is made of: its parameters, each declared once, and what must fit together."""
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,6 +19,14 @@ _PADS, _RAILS = "pads lie between", "rails lie between"
 _STIFF, _HEAVY = f"100 N m^2 to 1 GN m^2: {_RAILS}", f"1e-6 kg m to 1000 kg m: {_RAILS}"
 _LONG = f"1 mm to 1 m: {_RAILS}"
 _BENDS: dict[str, Any] = {"goes_with": "web_thickness"}
+_SECTION = (
+    *("bending_stiffness", "shear_stiffness", "rotary_inertia", "torsional_stiffness", "polar_inertia"),
+    *("head_height", "foot_depth", "centroid_height"),
+)
+_WEB = 16.5e-3
+"""Thickness of the web of UIC 60, m."""
+_NEAR = 0.01
+"""By which the mass of a rail may differ from that of UIC 60: tables print 60 to 60.3 kg/m."""
 
 
 @dataclass(frozen=True)
@@ -71,10 +80,10 @@ class LateralParameters:
         Quantity("m"), "33 mm", "height of its centroid above that", f"-1 m to 1 m: {_RAILS}", default=0.033
     )
     web_thickness: float | None = parameter(
-        Quantity("m", above=0), "16.5 mm",
+        Quantity("m", above=0, infinite=True), "16.5 mm",
         "thickness of the web of the rail: with it the web bends across the rail, between head and foot, "
-        "each of which bends and twists by itself",
-        _LONG, default=None, otherwise="the section keeps its form",
+        'each of which bends and twists by itself; "inf" for a section that keeps its form',
+        _LONG, default=None, otherwise="16.5 mm of a UIC 60 rail; any other section keeps its form",
     )  # fmt: skip
     web_height: float = parameter(
         Quantity("m", above=0), "89.5 mm", "height of the web, from the foot to the head", _LONG,
@@ -104,5 +113,17 @@ class LateralParameters:
         positive("width of the rail's foot (m)", self.foot_width)
         for name, key in keys_of(type(self), "").items():
             given = getattr(self, name) != getattr(type(self), name)
-            if key.goes_with and given and getattr(self, key.goes_with) is None:
+            if key.goes_with and given and getattr(self, key.goes_with) in (None, math.inf):
                 raise InputError(name, shown(getattr(self, name)), f"only together with {key.goes_with}")
+
+    @property
+    def web(self) -> float | None:
+        """Thickness of the web that bends, m, as given or of UIC 60; None of a section that keeps its form.
+
+        A rail is a UIC 60 where no value of its section is another, and its mass is near.
+        """
+        if self.web_thickness is not None:
+            return self.web_thickness if math.isfinite(self.web_thickness) else None
+        own = all(getattr(self, name) == getattr(type(self), name) for name in _SECTION)
+        near = abs(self.track.mass_per_length / (DENSITY * _AREA) - 1.0) < _NEAR
+        return _WEB if own and near else None

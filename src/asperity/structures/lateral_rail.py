@@ -19,6 +19,8 @@ from asperity.structures.wheel_modes import WheelModes
 
 THIRD = 1.0 / 3.0
 """Lateral stiffness of a pad over its vertical one."""
+SIDE = 0.02
+"""Depth below the top of the head at which a hammer strikes its side, m: about its middle."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,10 +134,11 @@ class LateralTrack(LateralParameters):
 
     Notes
     -----
-    Its section keeps its form, and warps freely, unless a `web_thickness` is given: then head and foot are
-    beams of their own and the web bends between them (`asperity.structures.rail_web`), which is most of why
-    lateral decay rates measured at 1.25 kHz were 2.5 to 4 times lower than those of a section that keeps its
-    form (docs/evidence/measured_railway.md). Pads and ballast lose as they do vertically, by the same share
+    Head and foot of a UIC 60 rail, or of any whose `web_thickness` is given, are beams of their own, and the
+    web bends between them (`asperity.structures.rail_web`): most of why lateral decay rates measured at
+    1.25 kHz were 2.5 to 4 times lower than those of a section that keeps its form, and warps freely
+    (docs/evidence/measured_railway.md). Any other section keeps it, and each whose `web_thickness` is
+    infinite. Pads and ballast lose as they do vertically, by the same share
     at every frequency; other springs below are as stiff as vertically. Sleepers move sideways as rigid bodies
     and do not roll. Bays are all nominal, and rail dampers are left out.
 
@@ -150,7 +153,7 @@ class LateralTrack(LateralParameters):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.web_thickness is not None:
+        if self.web is not None:
             rail_web.section_of(self)  # refuses what cannot be
 
     @property
@@ -161,7 +164,7 @@ class LateralTrack(LateralParameters):
     @cached_property
     def section(self) -> rail_web.WebbedSection | None:
         """Head, foot and the web that bends between them; None of a section that keeps its form."""
-        return None if self.web_thickness is None else rail_web.section_of(self)
+        return None if self.web is None else rail_web.section_of(self)
 
     def contact_shapes(self, place: float) -> Array:
         """What moves a contact, a place (m) off the middle of the head, down and sideways (2, m), by rows.
@@ -307,18 +310,21 @@ class LateralTrack(LateralParameters):
         largest = np.abs(self.waves(_angular(frequency)).multipliers).max(axis=0)
         return -20.0 * np.log10(largest) / self.track.sleeper_spacing
 
-    def decay_rate_en15461(self, frequency: ArrayLike) -> Array:
-        """Decay rate (f,), dB/m, as a hammer on the side of the head at mid-span finds it; (f,), Hz.
+    def hammered(self, frequency: ArrayLike) -> tuple[Array, Complex]:
+        """Distances of EN 15461 (x,), m, from a force at mid-span, and receptances there (x, f), m/N.
 
-        All waves at once, at the distances of EN 15461.
+        Of the side of the head, where the force is, by all waves at once; frequencies (f,), Hz.
         """
-        waves, (_, sideways) = self.waves(_angular(frequency)), self.contact_shapes(0.0)
-        spacing = self.track.sleeper_spacing
-        distances = spacing * np.array(EN_15461_BAYS)
-        force = 0.5 * spacing
-        motion = waves.receptances(force + distances, force)
-        responses = np.einsum("a,xabf,b->xf", sideways, motion, sideways)
-        return decay_rate_of_responses(distances, np.abs(responses))
+        twist, top = self.contact_shapes(SIDE)
+        side, spacing = top - twist, self.track.sleeper_spacing
+        distances, force = spacing * np.array(EN_15461_BAYS), 0.5 * spacing
+        motion = self.waves(_angular(frequency)).receptances(force + distances, force)
+        return distances, np.asarray(np.einsum("a,xabf,b->xf", side, motion, side))
+
+    def decay_rate_en15461(self, frequency: ArrayLike) -> Array:
+        """Decay rate (f,), dB/m, as a hammer on the side of the head at mid-span finds it; (f,), Hz."""
+        distances, motion = self.hammered(frequency)
+        return decay_rate_of_responses(distances, np.abs(motion))
 
 
 def _share(stiffness: float | None, vertical: float, usual: float) -> float:

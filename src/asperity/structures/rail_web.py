@@ -152,7 +152,7 @@ def section_of(rail: LateralParameters) -> WebbedSection:
     InputError
         If heights do not follow each other, the rail has no shear, or nothing is left for head or foot.
     """
-    thickness = rail.web_thickness
+    thickness = rail.web
     assert thickness is not None
     web = np.array([-rail.web_depth, rail.web_height - rail.web_depth])
     heights = np.array([-rail.foot_depth, -rail.foot_centroid, *web, rail.head_centroid, rail.head_height])

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 
@@ -126,6 +127,22 @@ class StiffnessTable:
         place, known = np.log(frequency), np.log(self.frequencies)
         real, imaginary = (np.interp(place, known, part) for part in (self.real, self.imaginary))
         return np.asarray((real + 1j * imaginary) / self.nominal, dtype=complex)
+
+
+STIFFENING = tuple((5.0 * 10.0 ** (np.arange(38) / 10.0)).tolist())
+"""Frequencies of a pad that stiffens, 5 Hz to 25 kHz: below the first it is as stiff as there."""
+
+
+@cache
+def stiffening(factor: float) -> StiffnessTable:
+    """Stiffness that keeps its loss factor η over frequency, as (if/300 Hz)^α with tan(πα/2) = η.
+
+    Causal, as what loses and does not stiffen is not (Kramers and Kronig); a fractional derivative, as rail
+    pads are described by (S. Zhu, C. Cai and P. D. Spanos, J. Sound Vib. 335 (2015) 304).
+    """
+    exponent = 2.0 / math.pi * math.atan(factor)
+    grown = (1j * np.array(STIFFENING) / NOMINAL) ** exponent
+    return StiffnessTable(STIFFENING, tuple(grown.real.tolist()), tuple(grown.imag.tolist()))
 
 
 def stiffness_at_preload(rows: Array, preload: float) -> StiffnessTable:

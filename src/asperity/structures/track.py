@@ -50,6 +50,9 @@ class Track(track_parameters.TrackParameters):
         E (1 + i eta), and for Timoshenko G likewise.
     pad_damping, pad_loss_factor : float, optional
         Viscous, N s/m, or hysteretic, k_p (1 + i eta); one of them, or none for no damping.
+    pad_stiffens : bool
+        Whether a pad that has a loss factor stiffens over frequency, as in
+        `asperity.structures.support.stiffening`; `pad_stiffness` is that at 300 Hz.
     ballast_damping, ballast_loss_factor : float, optional
         The same for the ballast.
     shear_stiffness, rotary_inertia : float, optional
@@ -160,9 +163,12 @@ class Track(track_parameters.TrackParameters):
         return {key: value for key, value in asdict(self).items() if key not in ("name", "sources")}
 
     def _losses(self, part: str) -> chains.Losses:
-        measured = self.pad_table if part == "pad" else None
         relaxed: chains.Losses | None = getattr(self.relaxations, part, None)
-        return relaxed or measured or chains.ConstantLoss(getattr(self, f"{part}_loss_factor"))
+        factor = getattr(self, f"{part}_loss_factor")
+        over_frequency = None
+        if part == "pad":
+            over_frequency = chains.stiffening(factor) if self.pad_stiffens else self.pad_table
+        return relaxed or over_frequency or chains.ConstantLoss(factor)
 
     @property
     def rail(self) -> periodic_rail.Rail:

@@ -164,6 +164,14 @@ class TrackParameters:
     rail_loss_factor: float = parameter(_LOSS, 0.01, "loss factor of the rail", default=0.0)
     pad_damping: float | None = _PAD[0]
     pad_loss_factor: float | None = _PAD[1]
+    pad_stiffens: bool = parameter(
+        Flag(),
+        True,
+        "let a pad stiffen over frequency as one that keeps its loss factor must: by the exponent "
+        "2/pi arctan pad_loss_factor, from pad_stiffness at 300 Hz",
+        default=False,
+        goes_with="pad_loss_factor",
+    )
     ballast_damping: float | None = _BED[0]
     ballast_loss_factor: float | None = _BED[1]
     shear_stiffness: float | None = parameter(
