@@ -216,6 +216,18 @@ def test_lines_of_a_slow_shaft_are_the_same_in_blocks_as_in_the_whole_record(mon
         np.testing.assert_allclose(*heights, rtol=0.01)
 
 
+def test_what_is_loud_for_longer_than_a_block_stays_loud_where_all_lines_are_made_equal(monkeypatch):
+    """Noise that swells once in 5.3 s, in blocks of 1.4 s: its envelope has that line in both."""
+    time = np.arange(round(16.0 * RATE)) / RATE
+    swelling = 1.0 + 0.9 * np.cos(2 * np.pi * time / (16.0 / 3.0))
+    signal = swelling * np.random.default_rng(2).normal(size=time.size)
+    whole = diagnose(signal, RATE, B6205.tones(), SLOW)
+    blocks = slow_record(monkeypatch, 100.0, 2**14, signal)
+    for found in (whole, blocks):
+        view = found.record.white
+        assert view.amplitude[round(3.0 / 16.0 / view.step)] > 0.6 * view.level
+
+
 def test_the_memory_that_a_record_takes_is_no_matter_of_how_slowly_its_shaft_turns(monkeypatch):
     """At a tenth of a speed ten turns are ten times the samples; the record itself is given."""
     signal = faulty_signal("outer", SLOW, RATE, 30.0, noise=0.05)

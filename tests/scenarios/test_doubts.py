@@ -56,6 +56,10 @@ def test_a_device_on_which_nothing_was_ever_run_is_told(monkeypatch):
         ),
         (BALL | {"surface": BALL["surface"] | {"longest": "0.4 m"}}, "surface.longest = 400 mm: 0.07 m are"),
         (WHEEL | {"track": {"ballast_stiffness": "150 kN/m"}}, "The rail yields by 4\\d.* mm under a wheel"),
+        (
+            BEARING | {"inner_raceway": {"roughness": "50 nm", "longest": "500 mm"}},
+            "inner_raceway.longest = 500 mm: 123 mm are around, which hold less than that roughness",
+        ),
         (BEARING | {"radial": "0.1 N"}, "radial = 0.1 N: shaft.mass alone weighs 9.81 N"),
         (BEARING | {"shaft": {"mass": "1 g"}}, "shaft.mass = 0.001 kg: one of its 9 balls has 2.06 g"),
         (BEARING | {"housing": {"mass": "60 t"}}, "housing.mass = 60000 kg"),

@@ -272,6 +272,32 @@ def test_without_seven_points_in_a_row_there_is_no_slope_but_all_else(heights):
     assert found["Rq"] == pytest.approx(np.nanstd(heights))
 
 
+@pytest.mark.parametrize(("slope", "kept"), [(0.1, 129), (0.0252, 193), (0.005, 401)])
+def test_of_a_correlation_the_lobe_is_kept_with_points_beside_it(slope, kept):
+    """A cone that is below a tenth within 32 points, within 64, or nowhere."""
+    x, y = np.meshgrid(np.arange(-200, 201), np.arange(-200, 201), indexing="ij")
+    cone = np.maximum(1.0 - slope * np.hypot(x, y), 0.0)
+    assert spectra._around_lobe(cone).shape == (kept, kept)
+    shortest, longest = spectra.lengths_of(cone, (1.0, 1.0)) if slope > 0.01 else (0.8 / slope,) * 2
+    assert [shortest, longest] == pytest.approx([0.8 / slope] * 2, rel=5e-3)
+
+
+@pytest.mark.parametrize("shape", [(12, 10), (11, 10), (12, 9), (11, 9)])
+def test_an_areal_spectrum_is_that_of_a_whole_transform_and_rings_are_means_of_it(shape):
+    """Half of the plane is transformed: what stands at q stands at −q, but in columns that are both."""
+    surface = HeightMap(np.random.default_rng(5).normal(size=shape), (1.0, 1.5))
+    window = np.outer(*(0.5 - 0.5 * np.cos(2 * np.pi * np.arange(n) / n) for n in shape))
+    whole = np.abs(fft.fft2((surface.heights - surface.heights.mean()) * window)) ** 2
+    whole *= 1.5 / (4 * np.pi**2 * (window**2).sum())
+    qx, qy, density = spectra.psd_2d(surface)
+    assert_allclose(density, fft.fftshift(whole))
+    q = np.hypot(qx[:, None], qy)
+    ring = np.rint(q / max(qx[1] - qx[0], qy[1] - qy[0]))
+    radius, mean = spectra.psd_radial(surface)
+    assert_allclose(mean, [density[ring == n].mean() for n in range(1, len(mean) + 1)])
+    assert_allclose(radius, [q[ring == n].mean() for n in range(1, len(mean) + 1)])
+
+
 @pytest.mark.parametrize(("evaluated", "most"), [
     (lambda surface: spectra.psd_2d(surface)[2], 2.6),
     (spectra.texture_direction, 1.6),

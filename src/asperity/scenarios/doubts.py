@@ -98,10 +98,14 @@ def doubt_bearing(case: BearingUnderLoad) -> None:
             told = f"{of.ELEMENT}s are {rounded(1e3 * of.ball_diameter)} mm wide"
             _warn(f"{name}.width", fault.width, "m", told, "mm")
     for name in map(case.called, ("inner_raceway", "outer_raceway", "balls")):
-        roughness = getattr(case, name).roughness
-        if roughness is not None and roughness < SMOOTHEST:
+        keys = getattr(case, name)
+        if keys.roughness is not None and keys.roughness < SMOOTHEST:
             told = "the smoothest surfaces that are made have 0.1 nm"
-            _warn(f"{name}.roughness", roughness, "m", told, "nm")
+            _warn(f"{name}.roughness", keys.roughness, "m", told, "nm")
+        around = math.pi * (of.pitch_diameter if name.endswith("raceway") else of.ball_diameter)
+        if keys.roughness is not None and keys.longest > around:
+            told = f"{rounded(1e3 * around)} mm are around, which hold less than that roughness"
+            _warn(f"{name}.longest", keys.longest, "m", told, "mm")
     what, resonance = f"the resonance of the most loaded {of.ELEMENT} between the rings", case.ball_resonance
     warn_if_coarse(case.step, [(what, resonance, 0.99 * case.resolving(resonance) / resonance)])
 
