@@ -177,6 +177,21 @@ def test_a_spectrum_is_judged_as_what_it_states(surface, here, rail):
     assert measured[0]["here"].startswith("above it in 11 bands, by up to 1.7 dB")
 
 
+def test_a_self_affine_rail_is_judged_as_its_spectrum_and_not_as_one_texture():
+    """Whatever the seed; a measured line beside samples of it is judged as it is."""
+    rough = {"rms": "5 um", "longest": "0.1 m", "shortest": "4 mm"}
+    case = WheelOnRail(surface=rough, wheel={"section": "rigid"})
+    (told,), (other,) = (stated_levels(each, ["rail"], AT) for each in (case, case.with_(seed=7)))
+    assert_allclose(told, other)
+    assert told[2:4] == pytest.approx([4.34, -11.72], abs=0.01)  # as test_synthesis holds to drawn ones
+    assert np.isnan(told[4])  # of 3.15 mm there is no wave
+    line = Profile(1e-6 * np.sin(np.arange(50_000.0)), 1e-3)
+    rolled = case.with_(surface=rough | {"line": line, "continuation": "repeat"}, duration="0.1 s")
+    assert np.isnan(stated_levels(rolled, ["rail"], AT)).all()
+    line = case.with_(surface=rough | {"spectrum": "iso3095"})  # samples alone are self-affine
+    assert_allclose(stated_levels(line, ["rail"], AT)[0], [17.1, 17.1, 4.9, -8.0, -11.0], atol=0.051)
+
+
 def test_what_was_measured_or_corrugated_is_judged_as_it_is():
     rough = {"spectrum": "iso3095", "corrugation": "20 um", "corrugation_wavelength": "0.1 m"}
     case = WheelOnRail(surface=rough, wheel={"roughness": "disc", "section": "rigid"})

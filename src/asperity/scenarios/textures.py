@@ -281,7 +281,7 @@ def _samples(case: Case, seeds: list[int]) -> tuple[tuple[HeightMap, ...], tuple
         return maps, strips, missing, f"{measured}; {origin}"
     if surface.rms is not None:
         shape = (strip_rows(contact), window_cells(contact))
-        spacing, keys = (contact.spacing, contact.spacing), _self_affine_keys(surface)
+        spacing, keys = (contact.spacing, contact.spacing), self_affine_keys(surface)
         strips = tuple(synthesis.self_affine(shape, spacing, **keys, seed=seed) for seed in seeds)
         return strips, strips, 0.0, "samples synthesised: self-affine, Gaussian"
     return (), (), 0.0, ""
@@ -307,7 +307,7 @@ def _path(case: Case, grid: Grid, maps: tuple[HeightMap, ...], seed: int, lead: 
         may_shorten = case.duration is None
         return records.single_line(surface, record, lead, 2 * margin + 2, may_shorten=may_shorten)
     if surface.rms is not None:
-        keys = _self_affine_keys(surface)
+        keys = self_affine_keys(surface)
         spacing = (grid.spacing, grid.spacing)
         strip = synthesis.long_self_affine(shape, spacing, **keys, seed=seed, before=before)
         return Record(strip, "self-affine, Gaussian", draw=strip.draw)
@@ -482,6 +482,7 @@ def middle_line(strip: Strip) -> Array:
     return np.concatenate(lines)
 
 
-def _self_affine_keys(surface: Surface) -> dict[str, Any]:
+def self_affine_keys(surface: Surface) -> dict[str, Any]:
+    """What a section says of the self-affine texture that is drawn, as `SelfAffine` takes it."""
     names = ("rms", "hurst", "anisotropy", "lay", "longest", "shortest")
     return {name: getattr(surface, name) for name in names}

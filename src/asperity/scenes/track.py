@@ -16,6 +16,7 @@ from asperity.reporting import data
 from asperity.scenarios.laws import working_point
 from asperity.scenarios.records import spectrum_levels
 from asperity.scenarios.scene import PreparedCase, Receptance, Scene, mean_square_transfer
+from asperity.scenarios.textures import self_affine_keys
 from asperity.scenes import compute, measured, noise, schema
 from asperity.scenes.observer import Observer
 from asperity.scenes.over_frequency import held_values
@@ -26,6 +27,7 @@ from asperity.structures.causal_track import causal_track
 from asperity.structures.track import Track, decay_rate, decay_rate_en15461
 from asperity.surfaces.bands import band_levels_of
 from asperity.surfaces.heightmap import Profile
+from asperity.surfaces.synthesis import SelfAffine, line_levels
 from asperity.written_numbers import between, rounded
 
 
@@ -145,12 +147,15 @@ NEAR = 0.03
 def stated_levels(case: Any, parts: Sequence[str], wavelength: Array) -> Array:
     """Levels that spectra of a case state of parts of the texture (n, b), dB re 1 µm.
 
-    At wavelengths (b,), m, by name or from a table, with the level added. NaN where none does: of what was
-    measured, in the bands of a corrugation on top, and of the combined texture where it is not stated of all
-    that is rough.
+    At wavelengths (b,), m, by name or from a table, with the level added, or of a self-affine texture. NaN
+    where none does: of what was measured, in the bands of a corrugation on top, and of the combined texture
+    where it is not stated of all that is rough.
     """
     surface, rolling = case.surface, case.rolling
     found = {"rail": _stated(surface.spectrum, surface.level, wavelength)}
+    if surface.rms is not None and surface.spectrum is None and surface.line is None:
+        drawn = line_levels(SelfAffine(**self_affine_keys(surface)), wavelength)
+        found["rail"] = np.where(np.isfinite(drawn), drawn, np.nan)
     found["wheel"] = _stated(rolling.roughness, rolling.roughness_level, wavelength)
     if surface.corrugation is not None:
         half = 2.0 ** (0.5 * (surface.corrugation_bandwidth or 0.0)) * spectra.HALF_BAND

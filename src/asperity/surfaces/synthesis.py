@@ -10,7 +10,8 @@ import numpy as np
 from scipy import fft
 
 from asperity.arguments import Array, ArrayLike, NDArray, require, two_lengths
-from asperity.surfaces.bands import band_texture, range_of_bands
+from asperity.spectra import HALF_BAND, level_of
+from asperity.surfaces.bands import MICROMETRE, band_texture, range_of_bands
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.likeness import Likeness, likeness
 from asperity.surfaces.strip import LongStrip, places_across
@@ -195,6 +196,23 @@ class SelfAffine:
     def mean_square(self) -> float:
         """Sum of the spectrum over all waves, where it is one on the longest."""
         return sum(float(each.power.sum()) for each in self.ranges) or 1.0
+
+
+def line_levels(surface: SelfAffine, wavelength: Array) -> Array:
+    """One-third-octave levels (b,) of lines along x, dB re 1 µm, at wavelengths, m: of the ensemble.
+
+    A wave has the width of its tile's step of wavenumber; minus infinity where there is none.
+    """
+    found = np.zeros(len(wavelength))
+    for each in surface.ranges:
+        step = start_of(each.number) / each.tile.size[0]
+        power = np.bincount(waves_of(each.tile).along, each.power)  # of all waves across
+        here = step * np.arange(len(power))
+        for band, length in enumerate(wavelength):
+            low, high = 1.0 / (length * HALF_BAND), HALF_BAND / length
+            width = np.minimum(here + 0.5 * step, high) - np.maximum(here - 0.5 * step, low)
+            found[band] += float(np.sum(power * np.clip(width, 0.0, None))) / step
+    return level_of(found * (surface.rms / MICROMETRE) ** 2 / surface.mean_square)
 
 
 def drawn_out(anisotropy: float, lay: float) -> Array:
