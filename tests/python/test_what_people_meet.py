@@ -29,10 +29,7 @@ def test_help_on_a_kind_tells_every_key_with_unit_default_meaning_and_limits(kin
 
 def test_help_names_the_unit_that_a_number_is_in():
     told = inspect.getdoc(asperity.WheelOnRail)
-    assert (
-        "speed : m/s, default '56 m/s'\n    Rolling speed (a speed greater than 0, or, off tracks, a course"
-        in told
-    )
+    assert "speed : m/s, default '56 m/s'\n    Rolling speed (a speed greater than 0, or a course" in told
     assert "    pad_stiffness : N/m, optional\n        Stiffness of a rail pad" in told
     assert "laws : list of text, default ['areal', 'linear-filtered']" in told
 

@@ -17,8 +17,9 @@ from asperity.rolling.roll import roll_bodies
 from asperity.speeds import SpeedCourse
 from asperity.structures.ball_bearing import BallBearing
 from asperity.structures.body import Body
-from asperity.structures.rail_poles import RailBetween
+from asperity.structures.rail_poles import rail_at
 from asperity.structures.ring import Ring
+from asperity.structures.track import Track
 from one_contact import first_contact
 from refusals import refusals
 
@@ -100,11 +101,14 @@ def test_a_course_that_hardly_changes_is_the_constant_speed():
     assert hardly.energy.residual == pytest.approx(steady.energy.residual, rel=1e-3, abs=1e-9)
 
 
-def test_a_rail_is_refused():
-    with pytest.raises(InputError, match="speed: received 1 m/s to 4 m/s on a rail; allowed: one constant"):
-        roll_bodies(
-            object.__new__(RailBetween), [Body.rigid(MASS, LOAD)], [Linear(LOAD, 1e7)], speed=COURSE, **ACROSS
-        )
+def test_a_rail_of_other_speeds_is_refused():
+    track = Track.named("nordborg", rail_loss_factor=0.03)
+    rail = rail_at(track, SpeedCourse([0.0, 1.0], [20.0, 21.0]), 1e-4, [0.0], scattered=True)
+    told = "received 22 m/s in steps of 0.0001 s; allowed: 20 to 21 m/s and 0.0001 s, for which the rail's"
+    body = [Body.rigid(600.0, 6e4)], [Linear(6e4, 1e9)]
+    path = {"positions": [0.0], "start": 0.0, "duration": 0.02, "time_step": 1e-4}
+    with pytest.raises(InputError, match=told):
+        roll_bodies(rail, *body, speed=SpeedCourse([0.0, 0.02], [20.0, 22.0]), **path)
 
 
 COSINE = 5.0 / 6.0

@@ -11,12 +11,16 @@ from asperity.laws import HertzLaw, Linear
 from asperity.radiation.passing import passed_points
 from asperity.reduction.texture import StateTexture
 from asperity.reference import cnossos
+from asperity.rolling.roll import roll_bodies
 from asperity.scenarios.scene import mean_square_transfer
 from asperity.spectra import band_levels, psd
+from asperity.speeds import SpeedCourse
+from asperity.structures.body import Body
 from asperity.structures.moving_kernel import ZONES, HatResponse, moving_kernel
+from asperity.structures.rail_poles import rail_at
 from asperity.structures.track_parameters import Bays
 from asperity.surfaces.bands import from_bands
-from one_contact import roll_wheel
+from one_contact import first_contact, roll_wheel
 
 SPEED, STEP = 56.0, 50e-6
 TRACK = Track(
@@ -77,6 +81,33 @@ def test_linear_contact_is_within_one_decibel_of_the_frequency_domain():
     assert np.abs(levels[0] - levels[1])[away].max() < 1.0
 
 
+def test_a_slow_run_up_on_a_rail_is_constant_speeds_band_by_band():
+    """40 to 56 m/s in 1.6 s: beside the frequency domain for the texture that is met, and beside 48 m/s."""
+    texture, levels = roughness(2.2), []
+    for speed in (SpeedCourse([0.0, 1.6], [40.0, 56.0]), 48.0):
+        path = {"start": 0.0, "duration": 1.6, "settling": 0.4, "time_step": STEP, "positions": [0.0]}
+        rail = rail_at(TRACK, speed, STEP, [0.0])
+        assert len(rail.at_speeds) == (9 if speed != 48.0 else 1)
+        run = roll_bodies(rail, [Body.rigid(MASS, LOAD)], [linear(texture)], speed=speed, **path)
+        run = first_contact(run)
+        levels.append(in_bands(run.contact_force, texture, run, 4000, 160.0, 2500.0, speed=1.0)[1])
+        assert run.contact_force.mean() == pytest.approx(LOAD, rel=2e-3)
+    np.testing.assert_allclose(levels[0][0], levels[0][1], atol=0.6)
+    np.testing.assert_allclose(levels[0][0], levels[1][0], atol=0.5)
+
+
+@pytest.mark.parametrize(("scattered", "off"), [(True, 1e-6), (False, 1e-4)])
+def test_a_speed_that_hardly_changes_on_a_rail_is_a_constant_one(scattered, off):
+    """Poles are fitted to both of its kernels, each within 5e-4: by a fifth of that forces may differ."""
+    texture, forces = roughness(0.6), []
+    for speed in (20.0, SpeedCourse([0.0, 0.1], [20.0, 20.0 * (1.0 + 1e-9)])):
+        rail = rail_at(TRACK, speed, STEP, [0.0, 2.5], scattered=scattered)
+        path = {"start": 0.0, "duration": 0.1, "settling": 0.05, "time_step": STEP, "positions": [0.0, 2.5]}
+        run = roll_bodies(rail, [Body.rigid(MASS, LOAD)] * 2, [linear(texture)] * 2, speed=speed, **path)
+        forces.append(run.contact_force)
+    np.testing.assert_allclose(forces[1], forces[0], rtol=off)
+
+
 def test_a_flexible_wheel_follows_its_receptance(kernel):
     """With a mode far below the resonance on the contact, the force dips where wheel and rail balance."""
     wheel, texture, levels = Wheel(MASS, LOAD, [1800.0], [0.005], [40.0]), roughness(2.0), []
@@ -104,20 +135,51 @@ def test_the_force_converges_with_the_square_of_the_time_step():
 # --- points of the rail that are passed
 
 
+def passed(rail, forces, origin, points, settled=0):
+    """Points that forces pass at the speed of a kernel."""
+    positions = origin + rail.speed * rail.time_step * np.arange(forces.shape[1])
+    return passed_points(rail, forces, positions, points, settled)
+
+
 def test_a_point_moves_with_the_contact_when_it_is_passed(kernel):
     run = roll_wheel(kernel, WHEEL, linear(roughness(1.2)), start=0.0, duration=0.6, settling=0.2)
     points, history, origin = np.array([16.2, 16.5, 16.61]), run.history, run.history_start[0]
     settled = history.shape[1] - len(run.time)
-    displacement, velocity = passed_points(kernel, history, origin, points, settled)
+    displacement, velocity = passed(kernel, history, origin, points, settled)
     for x, moved in zip(points, displacement[0], strict=True):
         below = np.interp(x, run.position, run.over_displacement)
         assert np.interp(x, run.position, moved) == pytest.approx(below, rel=1e-3)
     middle = 0.5 * (displacement[0, :, 2:] - displacement[0, :, :-2]) / STEP
     assert np.std(velocity[0, :, 1:-1] - middle) < 0.1 * np.std(middle)  # second against sixth order
-    far = passed_points(kernel, history, origin, [16.2 + 300.0])[0]
+    far = passed(kernel, history, origin, [16.2 + 300.0])[0]
     assert np.abs(far).max() < 1e-3 * np.abs(displacement).max()
     with pytest.raises(InputError, match="points on the rail"):
-        passed_points(kernel, history, origin, [np.nan])
+        passed(kernel, history, origin, [np.nan])
+
+
+@pytest.mark.parametrize("course", [([0.0, 0.4], [15.0, 25.0]), ([0.1, 0.25], [25.0, 15.0])])
+def test_a_rail_moves_as_by_superposition_at_fixed_points_while_the_speed_changes(course):
+    """Under wheels 2.5 m apart at 25 to 67 m/s²: kernels of constant speeds, beside those of no speed."""
+    speed, places, h = SpeedCourse(*course), np.array([0.0, 2.5]), 5e-5
+    rail = rail_at(TRACK, speed, h, places)
+    laws = [linear(roughness(1.2))] * 2
+    path = {"start": 0.0, "duration": 0.4, "settling": 0.15, "time_step": h, "positions": places}
+    run = roll_bodies(rail, [Body.rigid(MASS, LOAD)] * 2, laws, speed=speed, **path)
+    settled = run.history.shape[1] - len(run.time)
+    rolled = speed.covered(h * (np.arange(run.history.shape[1]) - settled))
+    points = np.arange(2.7, 7.0, 0.1)
+    by_each = [
+        passed_points(rail.kernel, force[None], at + rolled, points, settled)[0][0]
+        for at, force in zip(places, run.history, strict=True)
+    ]
+    moved = np.sum(by_each, axis=0)
+    steady = LOAD * rail.kernel.weights.sum(axis=1).mean()
+    for wheel in range(2):
+        times = [np.interp(x, run.positions[wheel], run.time) for x in points]
+        below = np.array([np.interp(t, run.time, run.over_displacement[wheel]) for t in times])
+        expected = np.array([np.interp(t, run.time, each) for t, each in zip(times, moved, strict=True)])
+        np.testing.assert_allclose(below, expected, atol=2e-3 * steady)
+        assert np.std(below) > 0.02 * steady
 
 
 @pytest.mark.parametrize(
@@ -138,7 +200,7 @@ def test_a_blow_is_felt_as_the_receptance_has_it(track, struck, stride, steps, z
     rail = moving_kernel(track, SPEED, step, duration=0.06, positions=4)
     history = np.zeros(steps)
     history[10] = 1.0
-    displacement, _ = passed_points(rail, history[None], struck - 10 * stride, [point])
+    displacement, _ = passed(rail, history[None], struck - 10 * stride, [point])
     taps = rail.weights.shape[1]
     grid = HatResponse(rail.track, step, 3 * taps, zones)
     receptance = grid.waves.receptance(point + 5.4, struck + 5.4)
@@ -152,7 +214,7 @@ def test_a_steady_load_makes_no_sound_when_steps_end_on_sleepers():
     step = 0.6 / 400 / SPEED
     rail = moving_kernel(TRACK, SPEED, step, duration=0.12, positions=4)
     for start in (-16.8, 0.1):
-        _, velocity = passed_points(rail, np.full((1, 9000), LOAD), start, [start + 6.6, start + 6.9])
+        _, velocity = passed(rail, np.full((1, 9000), LOAD), start, [start + 6.6, start + 6.9])
         heard = velocity[0][:, 3000:] * np.hanning(6000)  # the load is there at once at first
         spectrum = np.abs(np.fft.rfft(heard, axis=1)) ** 2
         frequency = np.fft.rfftfreq(6000, step)
@@ -165,6 +227,6 @@ def test_a_bay_may_hold_a_step_more_by_rounding(monkeypatch):
     step = 0.6 / 400 / SPEED
     rail = moving_kernel(TRACK, SPEED, step, duration=0.02, positions=4)
     monkeypatch.setattr("asperity.radiation.passing.next_fast_len", lambda length, real: length)
-    displacement, _ = passed_points(rail, np.full((1, 3000), LOAD), -2.3985, [2.1])
+    displacement, _ = passed(rail, np.full((1, 3000), LOAD), -2.3985, [2.1])
     assert displacement.shape == (1, 1, 3000)
     assert displacement.max() > 0.0

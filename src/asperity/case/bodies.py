@@ -13,13 +13,14 @@ from asperity.case.rolled_over import RolledOver, StructureKeys, TrackKeys
 from asperity.case.scene import Case
 from asperity.case.sections import NoiseKeys
 from asperity.case.sideways import SidewaysKeys
+from asperity.case.speed import span_of
 from asperity.case.surface import Surface
 from asperity.case.time_steps import on_grid
 from asperity.errors import InputError
 from asperity.parameters import Choice, Problems, key
+from asperity.speeds import covered
 from asperity.structures.body import GRAVITY
 from asperity.units import written
-from asperity.written_numbers import rounded
 
 BUILT_IN = ("plane", "beam", "track", "structure")
 """What may be rolled over; but for the plane, each is a section of the case."""
@@ -204,7 +205,7 @@ class WheelOnRail(OverTrack, defaults=DEFAULTS):
     @property
     def title(self) -> str:
         """Say what rolls over what in this case."""
-        return f"Wheel on rail at {rounded(self.speed)} m/s"
+        return f"Wheel on rail at {span_of(self.speed)} m/s"
 
     @property
     def usual_step(self) -> float:
@@ -228,7 +229,7 @@ class WheelOnRail(OverTrack, defaults=DEFAULTS):
             allowed = f"at least {written(weight, 'N', 'kN')}, the weight of {mass:g} kg on the contact"
             remedy = "Loads include the wheel's own weight: give the load in kN, or a lighter wheel."
             yield InputError("wheel.load", received, allowed, remedy)
-        length = self.speed * self.rolled_time
+        length = covered(self.speed, self.rolled_time)
         contact = self.contact
         least = max(contact.window, (contact.filter_taps or 0) * contact.spacing)
         if length < least:

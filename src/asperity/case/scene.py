@@ -48,6 +48,8 @@ SAMPLING = 2.5  # points per period of the highest frequency, at least
 
 SMOOTH = "hertz-filtered"
 """Main law of those where there is no sample of the surface."""
+RADIATES = {"rail_radiation", "sleeper_length", "sleeper_width", "wheel_width"}
+"""Keys of [noise] of what radiates; all others are of levels beside the track."""
 OF_A_TRACK = ("noise", "sideways", "numerics.kernel", "numerics.poles")
 """Sections and keys that mean nothing where no track is rolled over."""
 
@@ -500,8 +502,6 @@ class Case(AnyCase):
         ahead = self.rolling.offsets
         start = self.record_start
         try:
-            if isinstance(self.rolled_over, TrackKeys):
-                refuse_course(self.speed, "over a track, whose waves are computed for one")
             if any(self.creep.creepage):
                 refuse_course(self.speed, "of what creeps")
         except InputError as error:
@@ -510,6 +510,7 @@ class Case(AnyCase):
         yield from self.rolled_over.problems_of_run(self.speed, start + min(ahead), last + max(ahead))
         if isinstance(self.rolled_over, TrackKeys):
             yield from self.noise.problems_of_train(self.contacts_behind)
+            yield from self._problems_of_levels()
             yield from self._problem_of_place()
             yield from self._problem_of_web()
             return
@@ -520,6 +521,17 @@ class Case(AnyCase):
                     what = f"{title}.{given}"
                     allowed = f"what a {self.over_name} has"
                     yield InputError(what, "a key of a track", allowed, "Remove it.")
+
+    def _problems_of_levels(self) -> Iterator[InputError]:
+        """Keys of levels beside the track, which are those of one speed."""
+        for name in (
+            sorted(self.noise.given().keys() - RADIATES) if isinstance(self.speed, SpeedCourse) else ()
+        ):
+            remedy = "Give a constant speed, or remove it."
+            allowed = (
+                "at a constant speed alone: no level beside the track is computed of a speed that changes"
+            )
+            yield InputError(f"noise.{name}", "a key of levels beside the track", allowed, remedy)
 
     def _problem_of_spin(self) -> Iterator[InputError]:
         """A spin that moves the rim of the smooth contact no faster than other creepages may."""

@@ -39,8 +39,7 @@ class Speed(Quantity):
     def allowed(self) -> str:
         """What may stand behind the key."""
         constant, _, example = super().allowed.partition(", with")
-        or_else = "or" if self.meant else "or, off tracks,"
-        return f'{constant}, {or_else} a course as "{self.course}", with{example}'
+        return f'{constant}, or a course as "{self.course}", with{example}'
 
     def __call__(self, value: object, origin: Origin = FROM_PYTHON) -> float:
         """Return the speed in SI, or its course."""

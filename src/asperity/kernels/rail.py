@@ -20,7 +20,12 @@ class Channels(NamedTuple):
     table: NDArray  # (p,), kernel
     first: NDArray  # (n + 1,), first channel of each source, and their number
     place: NDArray  # (n,), of the contacts at step zero, in periods of the track
-    stride: float  # distance rolled in a step, likewise
+    stride: float  # distance rolled in a step, likewise; of a speed that changes the first
+    rolled: NDArray  # (steps,), distance rolled at each step, likewise; none of a constant speed
+    pace: (
+        NDArray  # (steps,), where the speed is among those of the kernels, from 0 on; none of a constant one
+    )
+    rank: NDArray  # (p,), number of the speed of its kernel
     decay: NDArray  # (t, 2 q), poles of the kernels, per step: real parts, then imaginary parts
     residue: NDArray  # (t, cells + 1, 2 q), at equal places over a period, both ends included, m/N
     now: NDArray  # (t, cells + 1), displacement at the end of a step for unit force there, m/N
@@ -31,10 +36,21 @@ class Channels(NamedTuple):
 @compiled(**INNER)
 def place(channels, source, step, cells):  # type: ignore[no-untyped-def]
     """Cell of the period in which a contact is at a step, and the share of the cell behind it."""
-    periods = channels.place[source] + channels.stride * step
+    rolled = channels.stride * step
+    if channels.rolled.size > 0 and step > 0:
+        rolled = channels.rolled[step]
+    periods = channels.place[source] + rolled
     at = (periods - np.floor(periods)) * cells
     cell = min(int(at), cells - 1)
     return cell, at - cell
+
+
+@compiled(**INNER)
+def share_of(channels, p, step):  # type: ignore[no-untyped-def]
+    """Share of a channel in what a force at a step does: straight between the speeds of its kernels."""
+    if channels.pace.size == 0:
+        return 1.0
+    return max(0.0, 1.0 - abs(channels.pace[max(step, 0)] - channels.rank[p]))
 
 
 @compiled(**INNER, **REASSOCIATE)
@@ -98,16 +114,19 @@ def advance_channels(channels, motion, force, step):  # type: ignore[no-untyped-
         receiver = channels.receiver[p]
         t = channels.table[p]
         now, kernel = channels.now[t], channels.scattered[t]
+        pushed = share_of(channels, p, step - 1) * force[source]
         if channels.scatters[t]:
             cell, share = place(channels, source, step - 1, kernel.shape[0])
-            scatter(kernel, motion.ring[receiver], cell, share, (step - 1) % taps, force[source])
+            if pushed != 0.0:
+                scatter(kernel, motion.ring[receiver], cell, share, (step - 1) % taps, pushed)
         else:
             cell, share = place(channels, source, step - 1, now.shape[0] - 1)
             motion.rail_ahead[receiver] += advance_poles(
-                channels.decay[t], channels.residue[t], motion.rail[p], cell, share, force[source]
+                channels.decay[t], channels.residue[t], motion.rail[p], cell, share, pushed
             )
         cell, share = place(channels, source, step, now.shape[0] - 1)
-        motion.rail_now[p] = now[cell] + share * (now[cell + 1] - now[cell])
+        here = now[cell] + share * (now[cell + 1] - now[cell])
+        motion.rail_now[p] = share_of(channels, p, step) * here
     if taps > 1:
         for k in range(motion.rail_ahead.shape[0]):
             motion.ring[k, (step - 1) % taps] = 0.0

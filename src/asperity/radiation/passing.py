@@ -23,15 +23,15 @@ DIFFERENCE = np.array([-1.0, 9.0, -45.0, 0.0, 45.0, -9.0, 1.0]) / 60.0
 def passed_points(
     kernel: MovingKernel,
     forces: Array,
-    origin: float,
+    positions: ArrayLike,
     points: ArrayLike,
     settled: int = 0,
     progress: Progress | None = None,
 ) -> tuple[Array, Array]:
     """Displacement, m, and velocity, m/s, (runs, p, n), of the rail at fixed points under moving forces.
 
-    Forces (runs, m), N, at every time step from a position `origin` on, m from the sleeper at zero, as are
-    the points (p,). Positive downwards, without the first `settled` time steps. The velocity is the central
+    Forces (runs, m), N, at every time step, at rising positions (m,), m from the sleeper at zero, as are the
+    points (p,). Positive downwards, without the first `settled` time steps. The velocity is the central
     difference of sixth order (−0.2 % at an eighth of the sampling frequency).
 
     Bay by bay: what the forces in it do at a point. By reciprocity G(x_f|x) = G(x|x_f), so that one source at
@@ -42,22 +42,20 @@ def passed_points(
     """
     bay_length = kernel.track.sleeper_spacing
     places = np.atleast_1d(finite_array("points on the rail (m)", points)) / bay_length
-    first = origin / bay_length
-    stride = kernel.speed * kernel.time_step / bay_length  # in bays
-    count = forces.shape[1]
+    at = finite_array("positions on the rail (m)", positions, count=forces.shape[1]) / bay_length
+    count = len(at)
     taps = kernel.weights.shape[1]
-    bays = range(math.floor(first), math.floor(first + stride * (count - 1)) + 1)
-    ends = {bay: min(max(0, math.ceil((bay - first) / stride)), count) for bay in (*bays, bays.stop)}
+    bays = range(math.floor(at[0]), math.floor(at[-1]) + 1)
+    ends = dict(zip((*bays, bays.stop), np.searchsorted(at, (*bays, bays.stop)).tolist(), strict=True))
     # rounding may put a step more into a bay, where a bay is passed in a whole number of steps
-    most = max(ends[bay + 1] - ends[bay] for bay in bays)
-    most = max(most, min(count, math.ceil(1.0 / stride)))
+    most = max(ends[bay + 1] - ends[bay] for bay in bays) + 1
     waves = _Waves(kernel, next_fast_len(taps + most, real=True))
     passed = [_Point(waves, place, taps) for place in places]
     displacement = np.zeros((len(places), len(forces), count))
 
     def by_forces_in(bay: int) -> tuple[slice, list[Array]]:
         begin, end = ends[bay], ends[bay + 1]
-        within = first + stride * np.arange(begin, end) - bay
+        within = at[begin:end] - bay
         acting = forces[:, begin:end]
         sides = {point.side(bay) for point in passed} - {0}
         sent = waves.sent(bay, acting, within, sides)

@@ -116,8 +116,9 @@ def at_its_fastest(tree: DataTree) -> str:
     """Of which speed of the contacts frequencies are, where it changes in a run."""
     if not present(tree, rolling.TACHO):
         return ""
-    speed = values(tree, rolling.TACHO)
-    return f", at the fastest, {rounded(float(speed.max()), 5)} m/s" if np.ptp(speed) else ""
+    fastest = number(tree, rolling.SPEED)
+    changes = bool(np.ptp(values(tree, rolling.TACHO)))
+    return f", at the fastest, {rounded(fastest, 5)} m/s" if changes and fastest else ""
 
 
 def number(tree: DataTree, attribute: Attribute) -> float | None:

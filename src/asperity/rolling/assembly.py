@@ -116,7 +116,9 @@ def system_of(
         constant=np.pad(constant, (0, len(natural) - len(constant))) if len(constant) else constant,
         softening=np.zeros(n),
         time_step=float(h),
-        coupled=bool(len(channels.source) > n or (n > 1 and ground.natural.size > 0) or n > b),
+        coupled=bool(
+            (channels.source != channels.receiver).any() or (n > 1 and ground.natural.size > 0) or n > b
+        ),
         channels=channels,
     )
 

@@ -12,12 +12,13 @@ from asperity.kernels.rail import Channels
 from asperity.rolling.course import Course
 from asperity.rolling.resolution import PER_MODE, PER_SLEEPER
 from asperity.rolling.steps import Limit, alternating_of_modes, padded, resolved_step
+from asperity.rolling.trajectory import Trajectory
 from asperity.structures.beam import Beam, SupportedBeam
 from asperity.structures.modal import HIGHEST, Modal
 from asperity.structures.moving_kernel import MovingKernel
 from asperity.structures.rail_poles import CELLS, RailBetween, RailPoles, over_the_period
 from asperity.structures.track import Track
-from asperity.written_numbers import rounded
+from asperity.written_numbers import between, rounded
 
 PLACES = 256
 """Positions at which mode shapes are looked at."""
@@ -87,7 +88,8 @@ def no_channels(n: int) -> Channels:
     first = np.zeros(n + 1, dtype=np.int64)
     decay, residue, now, scattered = map(np.zeros, ((0, 0), (0, 1, 0), (0, 1), (0, 1, 1)))
     kernels = decay, residue, now, scattered, np.zeros(0, dtype=bool)
-    return Channels(none, none, none, first, np.zeros(n), 0.0, *kernels)
+    nothing = np.zeros(0)
+    return Channels(none, none, none, first, np.zeros(n), 0.0, nothing, nothing, none, *kernels)
 
 
 def _refuse_to_leave(course: Course) -> None:
@@ -118,22 +120,28 @@ def _on_rail(ground: Ground, rail: RailBetween, course: Course) -> Ground:
     ways = [course.mechanism.contacts[k].sides[0].trajectory for k in np.flatnonzero(on_rail).tolist()]
     every = course.total + 1
     given = np.concatenate([way.rates(range(1 if way.spacing else every)) for way in ways])
-    same = np.allclose(given, kernel.speed, rtol=1e-9, atol=0.0)
+    slowest = rail.at_speeds[0].kernel.speed
+    same = given.min() >= slowest * (1.0 - 1e-9) and given.max() <= kernel.speed * (1.0 + 1e-9)
     if not (same and np.isclose(course.time_step, kernel.time_step, rtol=1e-9, atol=0.0)):
-        other = given[np.abs(given - kernel.speed).argmax()]
+        other = given[np.abs(given - 0.5 * (slowest + kernel.speed)).argmax()]
         received = f"{other:.6g} m/s in steps of {course.time_step:.6g} s"
-        made = f"{kernel.speed:.6g} m/s and {kernel.time_step:.6g} s"
+        made = f"{between(f'{slowest:.6g}', f'{kernel.speed:.6g}')} m/s and {kernel.time_step:.6g} s"
         allowed = f"{made}, for which the rail's kernel was computed"
         raise InputError("path", received, allowed, "Compute the moving kernel of this path.")
     starts = np.concatenate([way.places(range(1)) for way in ways])
     channels, weights = _channels(rail, starts, on_rail)
+    if rail.slower:
+        channels = _changing(channels, rail, ways[0], range(every))
     found = np.zeros((n, n))
     static = np.array([each.sum(axis=1).mean() for each in weights])
-    found[channels.receiver, channels.source] = static[channels.table]
+    shares = np.clip(1.0 - np.abs(channels.pace[:1] - channels.rank), 0.0, 1.0) if rail.slower else 1.0
+    np.add.at(found, (channels.receiver, channels.source), shares * static[channels.table])
     squares, vectors = np.linalg.eigh(0.5 * (found + found.T))
-    taps = kernel.weights.shape[1]
-    softest = float(kernel.weights.sum(axis=1).max())
-    least = float((kernel.weights @ (-1.0) ** np.arange(taps)).min())  # of all places in a bay
+    own = [each.kernel.weights for each in rail.at_speeds]
+    taps = max(each.shape[1] for each in own)
+    softest = float(max(each.sum(axis=1).max() for each in own))
+    # of all places in a bay
+    least = float(min((each @ (-1.0) ** np.arange(each.shape[1])).min() for each in own))
     limit = "the passing of sleepers v/L", kernel.speed / kernel.track.sleeper_spacing, PER_SLEEPER
     yields = (vectors * squares.clip(0.0)) @ vectors.T
     bay = kernel.track.mass_per_length * kernel.track.sleeper_spacing
@@ -156,16 +164,17 @@ def _channels(rail: RailBetween, starts: Array, on_rail: NDArray[np.bool_]) -> t
 
     Places of the contacts on the rail at the start, m, and which of all contacts (n,) these are.
     """
-    tables: list[RailPoles | MovingKernel] = [rail.direct]
+    tables: list[RailPoles | MovingKernel] = [rail.at_speeds[0].direct]
     pairs = []
     for source, here in enumerate(starts):
-        for receiver, there in enumerate(starts):
-            found = rail.direct if source == receiver else rail.between(there - here)
-            if found is not None:
-                known = [index for index, table in enumerate(tables) if table is found]
-                tables += [] if known else [found]
-                pairs.append((source, receiver, known[0] if known else len(tables) - 1))
-    source, receiver, table = np.array(pairs, dtype=np.int64).T.copy()
+        for rank, at in enumerate(rail.at_speeds):
+            for receiver, there in enumerate(starts):
+                found = at.direct if source == receiver else at.between(there - here)
+                if found is not None:
+                    known = [index for index, table in enumerate(tables) if table is found]
+                    tables += [] if known else [found]
+                    pairs.append((source, receiver, known[0] if known else len(tables) - 1, rank))
+    source, receiver, table, ranks = np.array(pairs, dtype=np.int64).T.copy()
     contacts = np.flatnonzero(on_rail)
     none = np.zeros(0)
     weights = [each.kernel.weights for each in tables]
@@ -187,6 +196,9 @@ def _channels(rail: RailBetween, starts: Array, on_rail: NDArray[np.bool_]) -> t
         first=np.searchsorted(contacts[source], np.arange(on_rail.size + 1)),
         place=place,
         stride=rail.kernel.speed * rail.kernel.time_step / period,
+        rolled=none,
+        pace=none,
+        rank=ranks,
         decay=decay.reshape(len(tables), -1),
         residue=residue.reshape(len(tables), CELLS * bays + 1, -1),
         now=np.array([over_the_period(each[:, 0], bays) for each in weights]),
@@ -194,6 +206,19 @@ def _channels(rail: RailBetween, starts: Array, on_rail: NDArray[np.bool_]) -> t
         scatters=np.array([not isinstance(each, RailPoles) for each in tables]),
     )
     return channels, weights
+
+
+def _changing(channels: Channels, rail: RailBetween, way: Trajectory, steps: range) -> Channels:
+    """Channels between contacts whose speed changes along a way: how far they have rolled, and how fast."""
+    period = rail.kernel.track.period
+    places = way.places(steps)
+    rates = way.rates(steps)
+    speeds = [each.kernel.speed for each in rail.at_speeds]
+    return channels._replace(
+        stride=float(rates[0]) * rail.kernel.time_step / period,
+        rolled=np.asarray((places - places[0]) / period),
+        pace=np.interp(rates, speeds, np.arange(len(speeds), dtype=float)),
+    )
 
 
 @dataclass(frozen=True)

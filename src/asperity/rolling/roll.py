@@ -22,7 +22,6 @@ from asperity.rolling.rest import start_rolling
 from asperity.rolling.soundness import STILL, free_motion, refuse_missed_load, steady, without_rounding
 from asperity.rolling.stepper import Stepper
 from asperity.rolling.trajectory import Path
-from asperity.speeds import SpeedCourse
 from asperity.store import Checkpoint
 from asperity.structures.body import Body
 from asperity.structures.modal import Modal
@@ -108,8 +107,8 @@ def roll_bodies(
     laws : sequence of Law
         One for each contact; it reads its texture at the position of its own contact.
     speed : float
-        m/s, of all bodies; or an `asperity.speeds.SpeedCourse`, on all but rails. Forces along the
-        path, which it asks for, are not in the model.
+        m/s, of all bodies; or an `asperity.speeds.SpeedCourse`, on a rail that was made for it by
+        `rail_at`. Forces along the path, which it asks for, are not in the model.
     start : float
         Where the bodies are at time zero, after the run-in, m.
     duration, time_step : float
@@ -139,8 +138,6 @@ def roll_bodies(
     ComputationError
         If nothing is at rest at the start, or the motion runs away.
     """
-    if isinstance(over, RailBetween):
-        _refuse_changing(speed)
     whole = Path.laid(start, speed, time_step, duration, settling)
     ahead, seen = (as_row(given) for given in (positions, sensors))
     path = whole.ahead(offsets_of(bodies, laws, ahead))
@@ -170,16 +167,6 @@ def roll_bodies(
         in_contact=touching[:, kept],
         visited=np.array(list(map(_visited, course.everywhere, stepper.seen))),
     )
-
-
-def _refuse_changing(speed: float) -> None:
-    """Refuse a speed that changes, on a rail."""
-    if isinstance(speed, SpeedCourse):
-        received = f"{speed.slowest:.6g} m/s to {speed:.6g} m/s on a rail"
-        allowed = (
-            "one constant speed: a rail's kernel is that of one, and its waves remember where they began"
-        )
-        raise InputError("speed", received, allowed, "Roll at several constant speeds.")
 
 
 def _rows_of(over: Modal | RailBetween | None, sensors: Array) -> Array:

@@ -19,6 +19,7 @@ from asperity.laws import Need, Role, in_role, names, needs_of, spec_of
 from asperity.progress import Progress
 from asperity.radiation.passing import passed_points
 from asperity.rolling.roll import RolledBodies, roll_bodies
+from asperity.rolling.trajectory import Path
 from asperity.scenarios import compiling
 from asperity.scenarios.laws import ReducedCase, reduced_case, working_point
 from asperity.scenarios.running_in import run_in_case
@@ -29,8 +30,7 @@ from asperity.scenes.records import RecordedRuns
 from asperity.schema import Values
 from asperity.store import Checkpoint, Store, content_key
 from asperity.structures.modal import Modal
-from asperity.structures.moving_kernel import moving_kernel
-from asperity.structures.rail_poles import RailBetween, poles_or_kernel, rail_between
+from asperity.structures.rail_poles import RailBetween, rail_at
 from asperity.structures.track import Track
 
 T = TypeVar("T")
@@ -179,10 +179,9 @@ def _in_time(scene: Scene, case: Case, store: Store, progress: Progress) -> Moda
     """What is rolled over, as it is carried on in time: a track by its moving kernels."""
     if not isinstance(scene.over, Track):
         return scene.over
-    kernel = moving_kernel(scene.over, case.speed, case.time_step, cache=store, progress=progress)
     scattered = case.numerics.kernel == "scatter"
-    rail = kernel if scattered else poles_or_kernel(kernel, case.numerics.poles, cache=store)
-    return rail_between(rail, scene.offsets, cache=store, progress=progress)
+    given = scene.over, case.speed, case.time_step, scene.offsets
+    return rail_at(*given, poles=case.numerics.poles, scattered=scattered, cache=store, progress=progress)
 
 
 def _passed(computed: Computed, progress: Progress) -> tuple[Array, ...]:
@@ -190,9 +189,12 @@ def _passed(computed: Computed, progress: Progress) -> tuple[Array, ...]:
     forces = computed.stacked("history")
     origins = computed.first.history_start
     settled = forces.shape[-1] - len(computed.first.time)
+    step = computed.case.time_step
+    record = step * (len(computed.first.time) - 1)
+    rolled = Path.laid(0.0, computed.case.speed, step, record, step * settled).positions[0]
     kernel, points = computed.rail.kernel, computed.case.point_positions
     parts = [
-        passed_points(kernel, forces[:, k], float(origin), points, settled, progress)
+        passed_points(kernel, forces[:, k], origin + rolled - rolled[0], points, settled, progress)
         for k, origin in enumerate(origins)
     ]
     return tuple(np.sum(each, axis=0) for each in zip(*parts, strict=True))

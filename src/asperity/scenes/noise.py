@@ -30,6 +30,7 @@ from asperity.spectra import (
     level_deviation,
     level_of,
 )
+from asperity.speeds import SpeedCourse
 from asperity.structures.lateral_rail import LateralTrack
 from asperity.structures.track import Track, decay_rate
 from asperity.surfaces import bands, heightmap
@@ -75,6 +76,11 @@ def findings_of_labels(case: Any) -> list[Finding]:
         for name, (value, low, high) in rows.items()
         if not low <= value <= high
     ]
+
+
+def cited(case: Any) -> tuple[str, ...]:
+    """What sound power at a constant speed is cited by."""
+    return () if isinstance(case.speed, SpeedCourse) else (cnossos.CITATION,)
 
 
 def rolling_sound_power(
@@ -135,11 +141,11 @@ def noise(computed: compute.Computed) -> Values:
     linear law follows the bare line, so its sound power is that of CNOSSOS-EU without the contact filter A3:
     the difference of another law holds what its contact filters. Bands in which the force is not computed are
     left out of all totals. The linear law is rolled for it where the case does not name it. Nothing without
-    roughness.
+    roughness, nor at a speed that changes, of which CNOSSOS-EU does not know.
     """
     case = computed.case
     bare = in_role(Role.BARE, names())
-    if bare is None or computed.bare_levels is None:
+    if bare is None or computed.bare_levels is None or isinstance(case.speed, SpeedCourse):
         return {}
     contact_filter = cnossos.nearest_contact_filter(computed.shape.load, 2.0 * case.rolling.radius)
     centres, linear = _linear(computed, None)

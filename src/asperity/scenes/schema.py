@@ -267,7 +267,7 @@ _POWER = "A-weighted sound power level from vibration of the computed track, ove
 UNMEASURED_POWER_LEVEL_A = _unmeasured("unmeasured_power_level_a(law, radiator)", "dB(A) re 1 pW", _POWER)
 
 _tone = partial(Attribute, "spectra", condition=_TRACK)
-_PASSING = "speed over the distance of the sleepers"
+_PASSING = f"speed over the distance of the sleepers{_AT_FASTEST}"
 SLEEPER_PASSING_FREQUENCY = Attribute(
     "spectra", "sleeper_passing_frequency", "Hz", _PASSING, f"{_TRACK}, on single supports"
 )

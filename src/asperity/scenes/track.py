@@ -10,7 +10,6 @@ from asperity import spectra
 from asperity.arguments import Array
 from asperity.errors import Finding, Grade, LossFactorWarning, warn_of_findings
 from asperity.reduction.texture import along_path
-from asperity.reference import cnossos
 from asperity.reference.railways import iso_3095_decay_rate
 from asperity.reporting import data
 from asperity.scenarios.laws import working_point
@@ -23,6 +22,7 @@ from asperity.scenes.over_frequency import held_values
 from asperity.scenes.sideways import sideways_group, sideways_of
 from asperity.schema import Values, declared, group
 from asperity.schema import spectra as spectra_schema
+from asperity.speeds import SpeedCourse, at_fastest, slowest
 from asperity.structures.causal_track import causal_track
 from asperity.structures.track import Track, decay_rate, decay_rate_en15461
 from asperity.surfaces.bands import band_levels_of
@@ -97,6 +97,8 @@ def linear_reference(computed: compute.Computed) -> tuple[Array, Array]:
     return force, texture
 
 
+SPEEDS = 9
+"""Speeds of a course over which the linear reference of several contacts is a mean."""
 MOST_COUPLED = 8
 """Contacts that the linear reference takes as coupled: the work grows with their square."""
 
@@ -111,11 +113,13 @@ def _coupled(scene: Scene, stiffness: float, speed: float, places: Array, freque
     """
     count = min(len(scene.offsets), MOST_COUPLED)
     ahead = np.array(scene.offsets[:count]) - scene.offsets[0]
-    delay = np.exp(2j * np.pi * np.outer(ahead, frequency) / speed)
+    speeds = np.linspace(slowest(speed), speed, SPEEDS) if slowest(speed) < speed else np.array([speed])
+    delays = [np.exp(2j * np.pi * np.outer(ahead, frequency) / each) for each in speeds]
     squares = np.zeros((2, len(frequency)))
     for place in places:
         transfer = scene.coupled_transfer(stiffness, float(place), frequency, count)
-        squares[0] += np.mean(np.abs(np.sum(transfer * delay, axis=1)) ** 2, axis=0)
+        for delay in delays:
+            squares[0] += np.mean(np.abs(np.sum(transfer * delay, axis=1)) ** 2, axis=0) / len(delays)
         squares[1] += np.mean(np.sum(np.abs(transfer) ** 2, axis=1), axis=0)
     return squares / len(places)
 
@@ -365,7 +369,7 @@ RAIL = Observer(
     lambda computed: computed.derived(track_spectra),
     needs=("track",),
     findings=findings_of_noise,
-    sources=lambda computed: (cnossos.CITATION, *noise.sources_of(computed.case)),
+    sources=lambda computed: (*noise.cited(computed.case), *noise.sources_of(computed.case)),
 )
 """Motion and sound power of what rolls over a track, over frequency."""
 PASS_BY = Observer(
@@ -373,6 +377,7 @@ PASS_BY = Observer(
     [each for each in declared(schema) if each.group == "pass_by"],
     pass_by_of,
     needs=("track",),
+    asked_of=lambda computed: not isinstance(computed.case.speed, SpeedCourse),
 )
 """What is heard beside the track."""
 
@@ -392,7 +397,7 @@ def planned_track(prepared: PreparedCase) -> list[tuple[str, str]]:
     known = "rail, sleepers and wheel"
     if reason := noise.silent_wheel(case):
         known = f"rail and sleepers: {reason}"
-    if np.ptp(prepared.textures.line):
+    if np.ptp(prepared.textures.line) and not isinstance(case.speed, SpeedCourse):
         known += (
             f"; by CNOSSOS-EU for {noise.track_label(case)} pads and a wheel of {noise.wheel_label(case)}"
         )
@@ -400,7 +405,9 @@ def planned_track(prepared: PreparedCase) -> list[tuple[str, str]]:
     warn_of_findings(doubts)
     frequencies = f"critical speed {rounded(track.critical_speed, 4)} m/s"
     if not track.continuous:
-        passing = f"sleeper passing {rounded(case.speed / track.sleeper_spacing, 4)} Hz"
+        passing = (
+            f"sleeper passing {rounded(case.speed / track.sleeper_spacing, 4)} Hz{at_fastest(case.speed)}"
+        )
         frequencies = (
             f"pinned–pinned {rounded(track.pinned_pinned_frequency, 4)} Hz, {passing}, {frequencies}"
         )
@@ -412,7 +419,15 @@ def planned_track(prepared: PreparedCase) -> list[tuple[str, str]]:
         *described_losses(losses),
         ("rail motion recorded at", points),
         ("sound power", f"of {known}"),
+        *_left_out(case.speed),
     ]
+
+
+def _left_out(speed: float) -> list[tuple[str, str]]:
+    """What is not computed of a speed that changes, in words."""
+    if not isinstance(speed, SpeedCourse):
+        return []
+    return [("not of a speed that changes", "sound power by CNOSSOS-EU, and levels beside the track")]
 
 
 def _rows_of_bays(track: Track) -> Iterator[tuple[str, str]]:

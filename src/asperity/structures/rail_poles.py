@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -11,9 +11,11 @@ import scipy
 from asperity.arguments import Array, ArrayLike, Complex, NDArray
 from asperity.errors import ComputationError, InputError, UnconvergedWarning, percent
 from asperity.progress import Progress
+from asperity.speeds import slowest
 from asperity.store import Store, content_key, made
 from asperity.structures.modal_fit import least_squares, paired, real_basis, vector_fit
 from asperity.structures.moving_kernel import DIED_AWAY, MovingKernel, moving_kernel
+from asperity.structures.track import Track
 
 POLES = 100
 """Poles of a rail where nothing is said of them."""
@@ -253,6 +255,12 @@ class RailBetween:
     direct: RailPoles | MovingKernel  # under the force itself
     crossing: Mapping[float, RailPoles | MovingKernel]  # by how far ahead of the force, m; negative behind
     reach: float = np.inf  # m, beyond which contacts do not feel each other
+    slower: "tuple[RailBetween, ...]" = ()  # the same at lower speeds, rising, for one that changes
+
+    @property
+    def at_speeds(self) -> "tuple[RailBetween, ...]":
+        """It at all its speeds, rising."""
+        return (*self.slower, self)
 
     @property
     def kernel(self) -> MovingKernel:
@@ -327,6 +335,61 @@ def rail_between(
         if progress is not None:
             progress(done + 1, len(lengths), "rail between contacts")
     return RailBetween(direct, crossing, reach)
+
+
+SPEEDS_APART = 2.0
+"""Between speeds whose kernels are computed for a speed that changes, m/s, at most."""
+
+
+def rail_at(
+    track: Track,
+    speed: float,
+    time_step: float,
+    places: ArrayLike,
+    *,
+    poles: int | None = None,
+    scattered: bool = False,
+    cache: Store | None = None,
+    progress: Progress | None = None,
+) -> RailBetween:
+    """Compute a rail for several contacts at a speed, constant or not.
+
+    Of a speed that changes kernels are those of constant speeds, `SPEEDS_APART` at most from the slowest to
+    the fastest, and between them straight lines, by the speed at which each force acts. That holds while the
+    speed hardly changes as long as the rail remembers: within a lag τ a contact comes aτ²/2 further than
+    such a kernel has it.
+
+    Parameters
+    ----------
+    track : Track
+        Of the rail.
+    speed : float
+        m/s, or an `asperity.speeds.SpeedCourse`.
+    time_step : float
+        s.
+    places : array_like (n,)
+        Of the contacts along the path, m.
+    poles : int, optional
+        As of `poles_or_kernel`.
+    scattered : bool
+        Whether kernels are scattered, not fitted by poles.
+    cache : Store, optional
+        Keeps kernels and poles.
+    progress : callable, optional
+        Is told parts done, parts in all and what is done.
+
+    Returns
+    -------
+    RailBetween
+    """
+    low = slowest(speed)
+    speeds = np.linspace(low, float(speed), math.ceil((speed - low) / SPEEDS_APART) + 1).tolist()
+    rails = []
+    for each in speeds:
+        kernel = moving_kernel(track, each, time_step, cache=cache, progress=progress)
+        direct = kernel if scattered else poles_or_kernel(kernel, poles, cache=cache)
+        rails.append(rail_between(direct, places, cache=cache, progress=progress))
+    return replace(rails[-1], slower=tuple(rails[:-1]))
 
 
 def _fitted(

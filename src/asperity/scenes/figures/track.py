@@ -282,7 +282,7 @@ def roughness(tree: DataTree, lines: Lines) -> Drawn:
     rough = [series for series in parts if series.name != "combined"]
     held = np.isfinite([line.y for line in stated]).any(axis=0) if len(stated) == len(rough) else None
     if speed and (held is None or held.any()):
-        yield _heard(wavelength if held is None else wavelength[held], speed)
+        yield _heard(wavelength if held is None else wavelength[held], speed, data.at_its_fastest(tree))
     yield (
         "Left out: bands that the texture does not hold, and levels more than "
         f"{SPAN:.0f} dB below the highest."
@@ -322,15 +322,19 @@ def out_of_round(tree: DataTree, lines: Lines) -> Drawn:
     yield "An order n passes n times in each turn."
 
 
-def _heard(wavelength: Numbers, speed: float) -> str:
-    """Say which one-third octaves of frequency bands of wavelength, m, cover at a speed, m/s."""
+def _heard(wavelength: Numbers, speed: float, changing: str) -> str:
+    """Say which one-third octaves of frequency bands of wavelength, m, cover at a speed, m/s.
+
+    And of one that changes that it is the fastest.
+    """
     bands, _, _ = third_octave_bands(*COMPARED)
     ends = speed / wavelength.max(), speed / wavelength.min()
     heard = int(np.sum((bands >= ends[0] / HALF_BAND) & (bands <= ends[1] * HALF_BAND)))
     passed = " to ".join(data.engineering(each, "Hz") for each in ends)
     smooth = "; in the others the surfaces are smooth" * (heard < len(bands))
     of = f"{heard} of the {len(bands)} one-third octaves from 100 Hz to 5 kHz"
-    return f"At {speed:.4g} m/s they pass with {passed}: {of}{smooth}."
+    at = "At its fastest, " if changing else "At "
+    return f"{at}{speed:.4g} m/s they pass with {passed}: {of}{smooth}."
 
 
 def _contact(tree: DataTree, wavelength: Numbers) -> list[Mark]:
