@@ -270,6 +270,20 @@ def test_parts_whose_lines_are_the_same_are_both_named_where_nothing_else_tells_
     assert "agree with more than one part, the " in diagnosis_sentence(diagnosis)
 
 
+@pytest.mark.parametrize(("duration", "frequency", "phase"), [
+    (1.0, 100.0, 0.0), (2.0, 60.0, 0.0), (3.0, 100.0, 0.5), (4.0, 100.0, 0.5)
+])  # fmt: skip
+def test_what_rounding_leaves_beside_a_pure_tone_is_no_line(duration, frequency, phase):
+    """Beside it there is 1e-16 of it, in patterns that repeat."""
+    time = np.arange(int(12_000 * duration)) / 12_000
+    diagnosis = diagnose(
+        np.sin(2.0 * np.pi * frequency * time + np.pi * phase), 12_000.0, B6205.tones(), SPEED
+    )
+    assert diagnosis.basis.kind == "nothing"
+    assert not diagnosis.parts
+    assert diagnosis.blows == 0.0
+
+
 def test_tones_allow_for_contact_angle_and_slip():
     """Closed forms at 15 degrees and at a cage that lags by 1 %; nominal at 0, at the free angle of an axial
     load."""

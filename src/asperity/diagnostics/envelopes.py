@@ -186,7 +186,7 @@ def prewhitened(signal: ArrayLike, rate: float) -> Array:
     values, _ = checked_signal(signal, rate)
     lines = rfft(values)
     size = np.abs(lines)
-    np.maximum(size, FLOOR * size.max(), out=size)
+    size[size < FLOOR * size.max()] = np.inf
     lines /= size
     count = values.size
     del values, size

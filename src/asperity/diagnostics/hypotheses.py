@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from asperity.arguments import Array
-from asperity.diagnostics.envelopes import analytic_signal, mean_spectrum, prewhitened
+from asperity.diagnostics.envelopes import FLOOR, analytic_signal, mean_spectrum, prewhitened
 from asperity.diagnostics.kurtogram import Kurtogram
 from asperity.diagnostics.lines import STANDS_OUT
 from asperity.diagnostics.prominence import LOWEST_PLACE, Prominence
@@ -163,17 +163,18 @@ class BearingRecord:
             return counted(pieces.seen(view, step), len(pieces), what, progress)
 
         plain = ((each, float(each.std())) for each in seen(np.asarray, "spectrum"))
-        spectrum, _ = mean_spectrum(plain, rate / step)
+        spectrum, loudness = mean_spectrum(plain, rate / step)
+        silent = FLOOR * loudness
 
-        def stands_out(view: Callable[[Array], Array], width: float, name: str) -> Prominence:
+        def stands_out(view: Callable[[Array], Array], width: float, name: str, silent: float) -> Prominence:
             envelopes = seen(view, f"envelope of the {name}")
-            return Prominence.of_envelopes(envelopes, rate / step, width, len(pieces), highest)
+            return Prominence.of_envelopes(envelopes, rate / step, width, len(pieces), highest, silent)
 
         return cls(
             duration=pieces.size / rate,
-            spectrum=Prominence.of(spectrum, means=len(pieces), highest=highest),
-            white=stands_out(white, 0.5 * rate, "whitened signal"),
-            band=stands_out(ringing, limits[1] - limits[0], "band"),
+            spectrum=Prominence.of(spectrum, means=len(pieces), highest=highest, silent=silent),
+            white=stands_out(white, 0.5 * rate, "whitened signal", 0.0),
+            band=stands_out(ringing, limits[1] - limits[0], "band", silent),
             kurtogram=kurtogram,
             limits=limits,
             pieces=len(pieces),

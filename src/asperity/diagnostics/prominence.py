@@ -10,6 +10,8 @@ from asperity.arguments import Array
 from asperity.diagnostics.envelopes import Spectrum, mean_spectrum
 from asperity.diagnostics.lines import AROUND, COUNTED, FEWEST, STANDS_OUT, WITHIN
 
+STEADY = 1e-5
+"""Share of an envelope up to which rounding may move it: noise moves that of any record more."""
 HARMONICS = 5
 """Of a comb: what a resonance leaves of them differs, what most of them have counts."""
 LOWEST_PLACE = 3
@@ -66,10 +68,16 @@ class Prominence:
 
     @classmethod
     def of(
-        cls, spectrum: Spectrum, level: float = 1.0, means: int = 1, highest: float = np.inf
+        cls,
+        spectrum: Spectrum,
+        level: float = 1.0,
+        means: int = 1,
+        highest: float = np.inf,
+        silent: float = 0.0,
     ) -> "Prominence":
         """How far the lines of a spectrum stand out up to a highest frequency, Hz, or of the mean of so many:
-        noise has higher lines in one than in the mean of many."""
+        noise has higher lines in one than in the mean of many. Lines that are silent, as those which rounding
+        leaves, do not."""
         from scipy.ndimage import maximum_filter1d
 
         frequency, amplitude = spectrum
@@ -83,7 +91,7 @@ class Prominence:
             last = int(centre + half)
             medians.append(np.median(amplitude[min(first, amplitude.size - 1) : last]))
         background = np.interp(np.arange(amplitude.size), centres, medians)
-        ratio = amplitude / np.maximum(background, 1e-300)
+        ratio = amplitude / np.maximum(background, max(silent, 1e-300))
         ratio[: LOWEST_PLACE - 1] = 0.0
         kept = slice(None)
         if highest < frequency[-1]:
@@ -100,13 +108,15 @@ class Prominence:
         width: float,
         means: int = 1,
         highest: float = np.inf,
+        silent: float = 0.0,
     ) -> "Prominence":
         """How far lines in the mean of so many envelopes, of one length and a band of a width, Hz, stand out,
-        up to a highest frequency, Hz."""
+        up to a highest frequency, Hz; silent ones do not."""
         levelled = ((each, float(each.mean())) for each in envelopes)
         (frequency, amplitude), level = mean_spectrum(levelled, rate)
         held = frequency <= width
-        return cls.of((frequency[held], amplitude[held]), level, means, highest)
+        silent = max(silent, STEADY * level)
+        return cls.of((frequency[held], amplitude[held]), level, means, highest, silent)
 
     @property
     def spectrum(self) -> Spectrum:
