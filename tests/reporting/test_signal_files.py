@@ -72,6 +72,19 @@ def test_another_program_reads_signals_to_their_digits_with_units_and_places(tmp
     np.testing.assert_allclose(spectrum["x"], FREQUENCY)
 
 
+@pytest.mark.parametrize(("unit", "length", "force"), [
+    ("m", 1, 0), ("m/s", 1, 0), ("m/s2", 1, 0), ("N", 0, 1), ("Pa", -2, 1), ("Hz", 0, 0), ("dB", 0, 0)
+])  # fmt: skip
+def test_exponents_of_a_unit_are_those_of_its_length_and_force(unit, length, force, tmp_path):
+    """By which programs turn values into units of their own: a pressure is N/m^2."""
+    file = tmp_path / "signals.uff"
+    file.write_text(universal_text([Channel("signal", np.arange(8.0), 0.1, unit)]))
+    units, signal = opened(file)
+    assert units["temp_offset"] == 273.15
+    assert signal["ordinate_len_unit_exp"] == length
+    assert signal["ordinate_force_unit_exp"] == force
+
+
 def test_the_package_reads_its_own_universal_file_by_names(tmp_path):
     (file,) = asperity.write_signals(result(), tmp_path)
     read = read_record(file, array="contact_force by linear 2")

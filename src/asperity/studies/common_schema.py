@@ -116,7 +116,7 @@ def write_metadata(folder: Path, labels: Sequence[Mapping[str, Any]]) -> None:
     _write(folder / TABLE, pa.table(columns), parquet)
     manifest = {
         "dataset": folder.name,
-        "title": "Signals of ball bearings, computed by asperity",
+        "title": "Signals of rolling bearings, computed by asperity",
         "citation": f"Computed by asperity {__version__}.",
         "package_version": f"asperity {__version__}",
         "schema_version": SCHEMA_VERSION,
