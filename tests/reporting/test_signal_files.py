@@ -138,15 +138,18 @@ def test_wav_files_hold_every_signal_at_its_rate_and_say_what_full_scale_is(tmp_
 
 
 @pytest.mark.parametrize("bits", [16, 24])
-def test_other_programs_read_what_is_between_the_pieces_of_a_wav_file(bits, tmp_path):
+@pytest.mark.parametrize("count", [1, 2])
+def test_other_programs_read_what_is_between_the_pieces_of_a_wav_file(bits, count, tmp_path):
+    """One channel of 24 bits has an odd number of bytes here."""
     from scipy.io import wavfile
 
-    channels = np.stack([np.linspace(-3.0, 2.0, 101), np.zeros(101)], axis=1)
+    channels = np.stack([np.linspace(-3.0, 2.0, 101), np.zeros(101)][:count], axis=1)
     (file := tmp_path / "a.wav").write_bytes(content := wave_bytes(channels, 8000.0, 3.0, "Pa", bits=bits))
     rate, samples = wavfile.read(file)
+    samples = samples.reshape(101, count)
     full = 2 ** (bits - 1) - 1
     numbers = samples / 2 ** (8 * samples.itemsize - bits) * 3.0 / full
-    assert (rate, samples.shape) == (8000, (101, 2))
+    assert rate == 8000
     np.testing.assert_allclose(numbers, channels, atol=1.6 / full)
     assert struct.unpack("<I", content[4:8])[0] == len(content) - 8
     assert told_scale(file) == pytest.approx(3.0 / full)
