@@ -1,6 +1,7 @@
 """A bearing that turns: its static solution, tones by the table of waviness, energy, interruption."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -106,6 +107,19 @@ def test_at_a_contact_angle_a_part_of_the_centrifugal_force_presses():
     assert (run.outer_force - run.inner_force).mean() == pytest.approx(outwards * COSINE, rel=0.01)
     assert run.inner_force.min() > 0.0
     np.testing.assert_array_equal(run.contact_force, np.vstack([run.inner_force, run.outer_force]))
+
+
+def test_rings_that_turn_and_bend_have_the_shapes_of_where_balls_are():
+    """At one speed shapes follow one another, over a course they are those of each place."""
+    lobes = Ring.bending(0.06, 20e-3, 200.0, RINGS.inner.contact_angle, most_lobes=3, damping_ratio=0.05)
+    rings = replace(RINGS, inner_bending=lobes, outer_bending=lobes)
+    even, course = (
+        turned_by(rings, speed=speed, time_step=2e-6)
+        for speed in (30.0, SpeedCourse([0.0, 1.0], [30.0, 30.0]))
+    )
+    largest = np.abs(course.contact_force).max()
+    assert np.ptp(course.inner_force, axis=1).max() > 0.01 * largest
+    assert_allclose(even.contact_force, course.contact_force, rtol=0.0, atol=1e-8 * largest)
 
 
 LINES = range(1, 200)

@@ -58,10 +58,9 @@ def test_spans_are_drawn_evenly_in_differences_or_in_ratios():
 def test_one_of_a_list_and_whole_numbers_are_drawn():
     case = HEALTHY | {"fault": {"on": "ball", "length": "1 mm", "depth": "0.1 mm"}}
     draw = {"fault.ball": "1..9", "laws": [["hertz"], ["linear"]]}
-    drawn = [member.case for member in study_of(case, {"seed": "1..20"}, draw).members()]
+    drawn = [member.case for member in study_of(case, {"seed": "1..80"}, draw).members()]
     assert {case.laws for case in drawn} == {("hertz",), ("linear",)}
-    assert {case.fault.ball for case in drawn} <= set(range(1, 10))
-    assert len({case.fault.ball for case in drawn}) > 4
+    assert {case.fault.ball for case in drawn} == set(range(1, 10))
 
 
 def test_a_speed_wanders_about_what_is_drawn_by_the_rms_that_was_asked_for():
@@ -75,8 +74,14 @@ def test_a_speed_wanders_about_what_is_drawn_by_the_rms_that_was_asked_for():
     means = np.array([speed.speeds.mean() for speed in courses])
     assert 19.9 < means.min() < means.max() < 30.1
     assert all((speed.times[0], speed.end) == (0.0, 6.0) for speed in courses)
-    (fixed,) = study_of(case, {"seed": [1]}, {"speed": "1500 1/min ± 1 %"}).members()
-    assert fixed.case.speed.speeds.mean() == pytest.approx(25.0, rel=0.005)
+    fixed = [
+        m.case.speed.speeds
+        for m in study_of(case, {"seed": "1..40"}, {"speed": "1500 1/min ± 1 %"}).members()
+    ]
+    assert np.mean(fixed) == pytest.approx(25.0, rel=0.001)
+    assert (
+        0.75 <= np.abs(np.array(fixed) - 25.0).max() < 0.75 * (1.0 + 1e-6)
+    )  # three times the rms, met and kept
 
 
 def test_a_load_that_is_drawn_need_not_stand_in_the_case():

@@ -60,11 +60,11 @@ def raceway_wear(loaded: LoadedBearing, turning: Kinematics, coefficient: float)
 
     Notes
     -----
-    A contact that passes wears k/H ∫ p |s| dx off the raceway, with Hertz's pressure p, the creepage s of
-    `asperity.structures.bearing_creepage` and the hardness H of the rings. A ring that stands still meets
-    each ball at one place under the load of that place; one that turns meets it everywhere, and wears alike
-    all around. Balls that do not touch both rings are left out. Spin is taken without sign: on which side of
-    a contact it adds to sliding is not said.
+    A contact that passes wears k/H ∫ p s dx off the raceway, with Hertz's pressure p, the size s of the
+    creepage of `asperity.structures.bearing_creepage` and the hardness H of the rings. A ring that stands
+    still meets each ball at one place under the load of that place; one that turns meets it everywhere, and
+    wears alike all around. Balls that do not touch both rings are left out. Spin is taken without sign: on
+    which side of a contact it adds to sliding is not said.
     """
     over_hardness = positive("wear coefficient", coefficient) / loaded.bearing.hardness
     azimuth = np.mod(loaded.azimuth, 2.0 * np.pi).reshape(-1)
