@@ -152,7 +152,8 @@ REFUSED = [
     ("check wheel.toml", 'Give it, as in line_spacing = "1.5 um" in [wheel].'),
     ("check distance.toml", "wheel.line_distance: received no distance for 10 lines"),
     # measured files
-    ("surface absent.x3p", "Error: absent.x3p: received no such file; allowed: "),
+    ("surface absent.x3p", "absent.x3p: received no such file; allowed: a file with heights."),
+    (f"{HEARD} absent.npy", "absent.npy: received no such file; allowed: a file with signals."),
     ("surface maps.npz", "Choose one, as in --array polished."),
     ("surface maps.npz --array line", "Give it, as in --height-unit um."),
     ("surface maps.npz --array line --height-unit um", 'Give it, as in --pixel "1.5 um".'),

@@ -58,7 +58,7 @@ def read_record(
     path: Path, rate: float | None = None, *, array: str | None = None, column: int | None = None
 ) -> Recorded:
     """Read a signal as `read_signal` does, and what tells its rate."""
-    file = guards.readable_file(path)
+    file = guards.readable_file(path, "signals")
     values, titles, stated, teller = read_columns(file, array)
     if stated:
         rate = rate_beside(rate, stated, file.name, teller)
@@ -79,7 +79,7 @@ def read_record(
 
 def read_beside(path: Path, which: str, array: str | None = None) -> tuple[Array, str]:
     """Read what was recorded beside a signal (n,), and its heading: of a column by number, or an array."""
-    file = guards.readable_file(path)
+    file = guards.readable_file(path, "signals")
     numbered = which.isdecimal()
     values, titles, _, _ = read_columns(file, array if numbered else which)
     if not numbered:

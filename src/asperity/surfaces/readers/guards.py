@@ -27,10 +27,13 @@ EXPORT = "Export the file again."
 Surface = HeightMap | Profile
 
 
-def readable_file(path: str | Path) -> Path:
-    """Check that a path is a readable, non-empty file, no pipe and no device, of at most 4 GiB."""
-    file = file_path("surface file", path, "the path of a file")
-    allowed = "a file with heights"
+def readable_file(path: str | Path, what: str = "heights") -> Path:
+    """Check that a path is a readable, non-empty file, no pipe and no device, of at most 4 GiB.
+
+    Messages say that it should hold heights, or what else is asked for.
+    """
+    allowed = f"a file with {what}"
+    file = file_path(allowed.removeprefix("a "), path, "the path of a file")
     received = no_file(file)
     remedies = {"a folder": "Name a file inside it.", "an empty file": "Export it again."}
     require(not received, str(file), received, allowed, remedies.get(received, "Check the path."))
