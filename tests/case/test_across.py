@@ -10,6 +10,7 @@ from asperity import Profile, WheelOnRail, WheelSection
 from asperity.case import across
 from asperity.errors import CaseError, InputError, PhysicsWarning
 from asperity.scenarios.geometry import geometry_of
+from asperity.scenarios.preparing import prepare
 from asperity.structures.outline import doubts_of
 from refusals import refusals
 from small_cases import HEARD
@@ -85,7 +86,7 @@ test_sections_that_cannot_touch_are_refused = refusals(
     (CONE, NARROW, "sections that meet 2.5 mm from an edge of what is known of them; allowed: a con"),
     (section(lambda y: -y), None, "meet 0.0 mm from an edge.*shift them less, or shrink contact.window"),
     (section(lambda y: y, first=0.05, last=0.09), NARROW, "at least 8 mm inside, half of contact.win"),
-    (CONE, section(lambda y: 100.0 * y), "rail_profile: received a section that overhangs"),
+    (CONE, section(lambda y: 100.0 * y), "rail_profile: received a section that overhangs.*Leave flanks out"),
     (Profile([0.0, 0.0, 0.0], 0.04), None, "wheel.profile: received 3 points; allowed: at least 4"),
     of=lambda wheel, rail: case_of(wheel, rail, rail_inclination="1:40"),
     error=(CaseError, InputError),
@@ -288,6 +289,36 @@ def told_of(case):
     with PhysicsWarning.caught() as caught:
         geometry_of(case)
     return " ".join(str(each.message) for each in caught)
+
+
+def file_of_depths(folder, heights):
+    """A head in a file whose heading says depth."""
+    rows = (
+        f"{1e3 * at:.6g};{1e3 * z:.9g}"
+        for at, z in zip(np.linspace(-36e-3, 36e-3, 289), heights, strict=True)
+    )
+    (folder / "rail.csv").write_text("\n".join(["y (mm); depth (mm)", *rows]))
+    return folder / "rail.csv"
+
+
+@pytest.mark.parametrize("keys", [{"rail_inclination": "1:40"}, {}], ids=["as they lie", "levelled"])
+@pytest.mark.parametrize("window", [{}, WINDOW], ids=["chosen", "given"])
+def test_what_is_doubted_of_a_file_is_told_once_where_it_is_laid_out(keys, window, tmp_path):
+    """However often the file is read before: to choose a window, to find where it touches."""
+    track = HEARD["track"] | {"rail_profile": file_of_depths(tmp_path, HEAD.heights)}
+    contact = HEARD["contact"] | window
+    with PhysicsWarning.caught() as caught:
+        case = WheelOnRail(**HEARD | {"track": track, "contact": contact, "sideways": keys})
+    assert not caught
+    told = [str(each.message) for each in prepare(case).caught]
+    assert sum("'depth (mm)' is taken for heights" in each for each in told) == 1
+
+
+def test_what_is_doubted_of_a_file_is_the_remedy_where_it_is_refused(tmp_path):
+    spiked = HEAD.heights + 15e-3 * (np.arange(289) == 10)
+    told = r"a section that overhangs.*If it counts into the material, change its sign"
+    with pytest.raises(CaseError, match=told):
+        case_of(rail=file_of_depths(tmp_path, spiked), rail_inclination="1:40")
 
 
 def test_sections_that_are_hardly_meant_are_doubted():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,7 +13,7 @@ import scipy
 
 from asperity.arguments import Array, ArrayLike, NDArray, require
 from asperity.case.sideways import INCLINATIONS
-from asperity.errors import InputError
+from asperity.errors import InputError, PhysicsWarning
 from asperity.structures.outline import HIGHEST_FLANGE
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.levelling import level
@@ -334,11 +334,13 @@ def _lying(
     """
     turned = False
     way = 0
-    doubts: Iterable[str] = ()
+    doubts = list[str]()
     if measured is None:
         y, z = _circle(radius)
     else:
-        section = read_section(measured, key)
+        with PhysicsWarning.caught() as caught:  # it is read as often as it is looked at, and told once
+            section = read_section(measured, key)
+        doubts += [str(each.message) for each in caught]
         y = _places_of(section)
         way, side = (0, 0) if head else flange_of(y, section.heights)
         turned = _is_head_down(y, section.heights) if head else way < 0
@@ -347,14 +349,14 @@ def _lying(
             _refuse_strange_flange(key, section, y, side)
         if key in OF_TRAINS and not way and angle is not None and section.start is not None:
             doubts_of = _doubts_of_head if head else _doubts_of_tread
-            doubts = doubts_of(key, y, section.heights)
+            doubts += doubts_of(key, y, section.heights)
         y, z = (y, section.heights) if angle is not None else _levelled(section, y, way != 0)
         z = z - np.interp(0.0, y, z)
     angle = angle or 0.0
     across = y * math.cos(angle) - z * math.sin(angle) + shift
     depth = -(y * math.sin(angle) + z * math.cos(angle))
     allowed = f"heights over places that rise, turned by {rounded(1e3 * angle)} mrad, too"
-    remedy = "Leave flanks out that are as steep, and check the units."
+    remedy = next(iter(doubts), "Leave flanks out that are as steep, and check the units.")
     require((np.diff(across) > 0.0).all(), key, "a section that overhangs", allowed, remedy)
     spline = scipy.interpolate.make_interp_spline(across, np.column_stack([depth, y]), k=3)
     return Lying(spline, turned, way != 0, measured is not None, tuple(doubts))
