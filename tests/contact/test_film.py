@@ -98,6 +98,46 @@ def test_films_of_lines_are_solutions_of_reynolds_equation(numbers):
         assert least <= value <= most
 
 
+@pytest.mark.parametrize(
+    ("numbers", "grid", "central"),
+    [
+        ((1e-12, 2500.0, 2e-5), {"inlet": 4.0}, 1.09),
+        ((1e-12, 2500.0, 5e-4), {"inlet": 1.2, "cells": 1600}, 1.44),
+        ((1e-12, 5000.0, 1e-4), {"inlet": 2.0}, 1.25),
+        ((1e-11, 2500.0, 5e-4), {"inlet": 2.0}, 1.40),
+        ((5e-11, 2500.0, 2e-5), {"inlet": 8.0}, 1.14),
+        ((5e-11, 5000.0, 5e-4), {"inlet": 3.0}, 1.21),
+    ],
+)
+def test_dowsons_film_is_within_a_fifth_where_no_oil_is_compressed_and_too_thick_where_it_is(
+    numbers, grid, central
+):
+    """10 to 45 per cent too thick in the middle; the least film is within a fifth of both."""
+    formula = films.LINES["dowson"]
+    found = [fit.thickness(Groups(*numbers)) for fit in (formula.central, formula.minimum)]
+    assert found == pytest.approx(solved_film(*numbers, compressed=False, **grid), rel=0.2)
+    compressed = solved_film(*numbers, **grid)
+    assert found[0] / compressed[0] == pytest.approx(central, abs=0.015)
+    assert found[1] == pytest.approx(compressed[1], rel=0.2)
+
+
+@pytest.mark.parametrize(
+    ("numbers", "inlet", "thicker"),
+    [
+        ((5e-11, 7500.0, 5e-4), 2.5, (1.32, 1.20)),
+        ((1e-11, 7500.0, 1e-4), 3.0, (1.20, 1.12)),
+        ((1e-12, 5000.0, 1e-6), 40.0, (0.92, 1.19)),
+        ((1e-11, 5000.0, 1e-6), 40.0, (1.28, 1.68)),
+        ((5e-11, 5000.0, 1e-6), 40.0, (1.59, 2.08)),
+    ],
+)
+def test_beyond_the_range_of_lines_solutions_are_thicker_by_what_is_told(numbers, inlet, thicker):
+    """In the middle and least, over the formula of Pan and Hamrock."""
+    formula = films.LINES["pan"]
+    found = [fit.thickness(Groups(*numbers)) for fit in (formula.central, formula.minimum)]
+    assert np.divide(solved_film(*numbers, inlet=inlet), found) == pytest.approx(thicker, abs=0.02)
+
+
 @pytest.mark.parametrize("load", [2e-5, 1e-4])
 def test_dowsons_film_is_that_of_an_oil_that_is_not_compressed(load):
     """Central film of Dowson and Toyoda, least of Dowson and Higginson: within 2 and 4 per cent."""

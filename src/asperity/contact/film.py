@@ -70,9 +70,9 @@ ELLIPSES = Formula(
         "Measured films averaged 30 % above the formula (Koye and Winer 1981).",
     ),
 )  # fmt: skip
+WITHIN = "the numbers at which it is within a fifth of solutions of Reynolds' equation"
 _of_lines = partial(
     Formula,
-    fitted_to="the numbers at which it is within a fifth of solutions of Reynolds' equation",
     fitted={"speed": (1e-12, 5e-11), "material": (2500.0, 5000.0), "load": (2e-5, 5e-4)},
 )
 LINES = {
@@ -81,9 +81,10 @@ LINES = {
         "P. Pan and B. J. Hamrock, J. Tribology 111 (1989) 246 (films of line contacts).",
         Fit(2.922, 0.692, 0.470, -0.166),
         Fit(1.714, 0.694, 0.568, -0.128),
+        fitted_to=WITHIN,
         beyond=(
-            "The film is that of the formula, continued: solutions are a quarter thicker at G 7500, and 1.7 "
-            "times as thick at W 1e-6.",
+            "The film is that of the formula, continued: solutions are up to a third thicker at G 7500, and "
+            "up to twice as thick at W 1e-6.",
             "Ends of rollers, where the film is thinner, are not in it.",
         ),
     ),
@@ -93,8 +94,10 @@ LINES = {
         "5th Leeds-Lyon Symposium (1979) (least and central film of line contacts).",
         Fit(3.06, 0.69, 0.56, -0.10),
         Fit(2.65, 0.70, 0.54, -0.13),
+        fitted_to=f"{WITHIN}, for an oil that is not compressed",
         beyond=(
-            "The film in the middle is that of an oil which is not compressed, thicker by 10 to 40 %.",
+            "The film is that of the formula, continued. In the middle it is 10 to 45 % too thick for an oil "
+            "that is compressed, within these numbers, too.",
             "Ends of rollers, where the film is thinner, are not in it.",
         ),
     ),
