@@ -179,6 +179,10 @@ def test_a_run_with_oil_tells_the_films_of_its_rollers(oiled):
     assert "Film by Pan and Hamrock" in table.note
     rows = dict(expected(prepare_bearing(case))[0])
     assert rows["not in it"] == RollerBearing.LEFT_OUT_OILED
+    one = "all contacts with a ring have one damping, that under its heaviest load"
+    assert one in rows["not in it"]
+    assert one in oiled.attrs["verdict"]
+    assert one not in RollerBearing.LEFT_OUT
     assert "µm at least; Λ" in next(told for name, told in rows.items() if name.startswith("film, outer"))
 
 

@@ -95,7 +95,7 @@ HEAVIEST_PARAMETER = _film(
 )
 FILM_RMS = _film("film_roughness(ring)", "m", "rms of both surfaces together within a contact")
 FILM_STIFFNESS = _film("film_stiffness(ring)", "N/m", "stiffness of a contact with its film, heaviest load")
-FILM_DAMPING = _film("film_damping(ring)", "N s/m", "damping of a contact with its film")
+FILM_DAMPING = _film("film_damping(ring)", "N s/m", "damping of a contact with its film, heaviest load")
 FILM_HEATING = _film("film_heating(ring)", "1", "share of the film that the heating of the inlet leaves")
 ASPERITY_SHARE = _film("asperity_share(ring)", "1", "share of the heaviest load that asperities carry")
 FILM_FORMULA = _oil("film_formula", "text", "whose formula the films are by")

@@ -101,7 +101,8 @@ class RollerBearing:
     """What no computation of it has."""
     LEFT_OUT_OILED: ClassVar = (
         "Contacts are full of oil; there is no friction, no rib, and no tilt of a ring while it turns; "
-        "slices of a roller do not know of each other, nor of sharp ends; static loads are those without oil."
+        "slices of a roller do not know of each other, nor of sharp ends; static loads are those without "
+        "oil, and all contacts with a ring have one damping, that under its heaviest load."
     )
     """What none with oil has."""
     SOURCE: ClassVar = "ISO/TS 16281:2008 (load and stiffness of rollers by slices)."
