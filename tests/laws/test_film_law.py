@@ -1,5 +1,7 @@
 """Laws with a film of oil: bodies and film in series, closed forms; tables and curves alike."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -63,6 +65,32 @@ def test_a_texture_is_followed_as_by_the_dry_law_and_its_states_move_with_the_fi
         found = force(law, [1e-4], at)
         alone = force(WithFilm(HertzLaw(K), FILM, LOAD), [0.0], at - height)
         assert found == pytest.approx(alone, rel=1e-9)
+
+
+def test_the_curve_with_a_film_is_found_once_for_all_pieces_of_a_path(monkeypatch):
+    """Where the curve of the dry law, or its states, are others, it is found anew."""
+    found = []
+    curve = WithFilm.curve
+    monkeypatch.setattr(WithFilm, "curve", lambda self, dry: found.append(dry) or curve(self, dry))
+    texture = StateTexture(np.array([[0.0] * 64, [2e-8] * 64]), np.array([1e-6, 2e-6]), 0.0, 1e-5)
+    law = WithFilm(Shifted(ForceCurve.hertz(K), texture), FILM, LOAD)
+    pieces = [law.prepare(each) for each in np.split(SHORT, 4)]
+    assert len(found) == 1
+    for positions, piece in zip(np.split(SHORT, 4), pieces, strict=True):
+        alone = WithFilm(Shifted(ForceCurve.hertz(K), texture), FILM, LOAD).prepare(positions)
+        for name, value in piece._asdict().items():
+            np.testing.assert_array_equal(value, getattr(alone, name), name)
+    softer = ForceCurve.hertz(0.5 * K)
+    moved = StateTexture(texture.heights, texture.approaches + 1e-7, 0.0, 1e-5)
+    for other in (Shifted(softer, texture), Shifted(ForceCurve.hertz(K), moved)):
+        laid = replace(law, law=other)
+        laid._softened.update(law._softened)
+        np.testing.assert_array_equal(
+            laid.prepare(SHORT).states, WithFilm(other, FILM, LOAD).prepare(SHORT).states
+        )
+        np.testing.assert_array_equal(
+            laid.prepare(SHORT).knots, WithFilm(other, FILM, LOAD).prepare(SHORT).knots
+        )
 
 
 def test_a_linear_law_is_softer_and_nearer_by_the_film():

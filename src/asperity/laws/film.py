@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -43,6 +44,7 @@ class WithFilm:
     law: spec.Law
     film: Film
     load: float
+    _softened: dict[tuple[Any, ...], dict[str, Any]] = field(default_factory=dict, init=False, repr=False)
 
     @property
     def name(self) -> str:
@@ -63,12 +65,15 @@ class WithFilm:
         assert isinstance(dry, Prepared)
         if dry.form == TABLE:
             return self._looked_up(dry)
-        states = self.nearer(dry.states)
-        curve = self.curve(ForceCurve(dry.knots, dry.coefficients, dry.exponent, dry.upper, dry.bilateral))
-        return dry._replace(
-            states=states, knots=curve.knots, coefficients=curve.coefficients, exponent=float(curve.exponent),
-            upper=float(curve.upper),
-        )  # fmt: skip
+        of_curve = dry.knots, dry.coefficients, dry.exponent, dry.upper, dry.bilateral
+        key = tuple(np.asarray(each).tobytes() for each in (dry.states, *of_curve))
+        if key not in self._softened:  # the same all along the path, which is laid out piece by piece
+            curve = self.curve(ForceCurve(*of_curve))
+            self._softened[key] = {
+                "states": self.nearer(dry.states), "knots": curve.knots, "coefficients": curve.coefficients,
+                "exponent": float(curve.exponent), "upper": float(curve.upper),
+            }  # fmt: skip
+        return dry._replace(**self._softened[key])
 
     def _looked_up(self, dry: Prepared) -> Prepared:
         """A table of forces with the film, in its states and in further ones of light contacts."""
