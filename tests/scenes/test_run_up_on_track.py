@@ -6,8 +6,11 @@ import pytest
 from asperity import Profile
 from asperity.case.bodies import WheelOnRail
 from asperity.errors import CaseError
+from asperity.rolling.roll import roll_bodies
 from asperity.running import prepare_case
 from asperity.scenarios.preparing import Work
+from asperity.scenes import compute
+from asperity.scenes.noise import noise
 from asperity.scenes.planning import plan
 from asperity.scenes.report import figures_of
 from small_cases import HEARD
@@ -68,6 +71,23 @@ def test_what_is_of_one_speed_is_left_out_and_the_page_stands(tree):
     assert "at the fastest, 33.333 m/s" in told["track"]
     assert told["not of a speed that changes"].endswith("levels beside the track")
     assert "CNOSSOS" not in told["sound power"]
+
+
+@pytest.mark.parametrize(("speed", "times"), [("80..120 km/h in 0.2 s", 1), ("100 km/h", 2)])
+def test_for_a_sound_power_that_is_not_told_no_law_is_rolled(speed, times, monkeypatch):
+    """CNOSSOS-EU's is changed by as much as the force of the bare linear law, at a constant speed alone."""
+    rolled = []
+
+    def counted(*given, **keys):
+        rolled.append(keys["speed"])
+        return roll_bodies(*given, **keys)
+
+    monkeypatch.setattr(compute, "roll_bodies", counted)
+    case = WheelOnRail(**RUN_UP | {"laws": ["shifted"], "speed": speed, "settling": "20 ms"})
+    found = compute.compute(prepare_case(case), lambda *_: None)
+    assert len(rolled) == times
+    assert (found.bare_levels is None) == (times == 1)
+    assert bool(noise(found)) == (times == 2)
 
 
 def test_levels_beside_the_track_are_refused():

@@ -28,6 +28,7 @@ from asperity.scenarios.scene import PreparedCase, Scene
 from asperity.scenarios.textures import other_contacts, recorded_time
 from asperity.scenes.records import RecordedRuns
 from asperity.schema import Values
+from asperity.speeds import SpeedCourse
 from asperity.store import Checkpoint, Store, content_key
 from asperity.structures.modal import Modal
 from asperity.structures.rail_poles import RailBetween, rail_at
@@ -155,7 +156,8 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
         book(f"law {name}")
     bare = in_role(Role.BARE, names())
     bare_force = None
-    if bare is not None and isinstance(scene.over, Track) and np.ptp(first.textures.line):
+    steady = not isinstance(case.speed, SpeedCourse)  # CNOSSOS-EU knows no other speed
+    if bare is not None and steady and isinstance(scene.over, Track) and np.ptp(first.textures.line):
         bare_force = (runs[bare] if bare in runs else once(bare, every)).contact_force
         book("what CNOSSOS-EU's sound power is of")
     scan = every[0].path_scan if Need.SCAN in needs_of(case.laws) else None

@@ -145,7 +145,7 @@ def noise(computed: compute.Computed) -> Values:
     """
     case = computed.case
     bare = in_role(Role.BARE, names())
-    if bare is None or computed.bare_levels is None or isinstance(case.speed, SpeedCourse):
+    if bare is None or computed.bare_levels is None:
         return {}
     contact_filter = cnossos.nearest_contact_filter(computed.shape.load, 2.0 * case.rolling.radius)
     centres, linear = _linear(computed, None)
