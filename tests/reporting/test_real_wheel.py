@@ -1,5 +1,7 @@
 """The figures and tables that only a wheel on a rail has, on a real run."""
 
+import json
+
 import numpy as np
 import pytest
 from report_reading import read_csv
@@ -201,9 +203,15 @@ def test_motion_of_passed_points_is_marked_when_the_wheel_passes(tree):
 @pytest.fixture
 def study(tree):
     """Table of a study of two speeds, which gave the same."""
-    table = kept(tree).expand_dims(speed=2).assign_attrs(sweep='{"speed": [56, 60]}')
-    table["speed"] = ("speed", [56.0, 60.0], {"units": "m/s", "long_name": "speed"})
-    return table
+    return study_over(tree, speed=[56.0, 60.0])
+
+
+def study_over(tree, **axes):
+    """Table of a study whose members all gave the same."""
+    table = kept(tree).expand_dims({key: len(values) for key, values in axes.items()})
+    for key, values in axes.items():
+        table[key] = (key, values, {"units": "m/s", "long_name": key})
+    return table.assign_attrs(sweep=json.dumps(axes))
 
 
 def test_a_study_shows_the_sound_of_rail_sleepers_and_wheel_and_the_pass_by(tree, study, capsys):
@@ -224,13 +232,44 @@ def test_a_study_shows_the_sound_of_rail_sleepers_and_wheel_and_the_pass_by(tree
     assert [row[column] for row in rows] == list(expected)
 
 
+@pytest.mark.parametrize(("count", "shown"), [(6, 6), (7, 6), (11, 6)])
+def test_lines_of_a_study_reach_from_first_to_last_and_captions_say_what_is_left_out(tree, count, shown):
+    """Seven speeds had a line each for the first six, below "a line for each speed"."""
+    speeds = np.linspace(20.0, 80.0, count).tolist()
+    table = study_over(tree, speed=speeds, load=[1.0, 2.0])
+    left = f"{shown} of {count} values of speed are shown; the CSV file has all." if shown < count else None
+    drawn = {
+        name: list(parts)
+        for key in ("load", "speed")
+        for name, _, parts in key_figures(table, None, key, {}, ["rms_force"])
+    }
+    for name in ("key-load", "bands-speed"):
+        panel, *words = drawn[name]
+        labels = [mark.label for mark in panel.marks if getattr(mark, "label", "")]
+        assert len(labels) == shown
+        assert [label.split()[-2] for label in (labels[0], labels[-1])] == ["20", "80"]
+        assert [each for each in words if " are shown" in each] == [*filter(None, [left])]
+    for name in ("key-speed", "bands-load"):
+        assert not any(isinstance(part, str) and " are shown" in part for part in drawn[name])
+
+
+def test_quantities_that_a_figure_leaves_out_are_counted(study):
+    names = [name for name in study if "band" not in study[name].dims and study[name].dtype.kind == "f"]
+    told = [part for _, _, parts in key_figures(study, None, "speed", {}, names) for part in parts]
+    panels = [part for part in told if not isinstance(part, str)]
+    (words,) = [part for part in told if isinstance(part, str) and "quantities" in part]
+    assert words.startswith("6 of ")
+    assert len(panels) == 6 + 1  # and levels by band
+
+
 def test_the_figure_of_a_study_draws_sound_and_nothing_that_is_zero_throughout(study):
     assert not study["contact_loss_share"].values.any()
     figures = {
-        name: list(parts) for name, _, parts in key_figures(study, None, "speed", {}, USUAL_IN_FIGURES)
+        name: [part for part in parts if not isinstance(part, str)]
+        for name, _, parts in key_figures(study, None, "speed", {}, USUAL_IN_FIGURES)
     }
-    panels = {panel.title: panel for *shown, _ in figures.values() for panel in shown}
-    for *shown, _ in figures.values():  # no legend mixes laws, what radiates, and values of keys
+    panels = {panel.title: panel for shown in figures.values() for panel in shown}
+    for shown in figures.values():  # no legend mixes laws, what radiates, and values of keys
         told = [
             tuple(sorted(line.label for line in panel.marks if getattr(line, "label", ""))) for panel in shown
         ]

@@ -91,7 +91,7 @@ def test_the_band_of_a_study_covers_fresh_seeds_as_often_as_it_claims():
 def test_the_figure_shows_mean_and_band():
     levels = np.random.default_rng(2).normal(60.0, 3.0, (5, 2, 3))
     found = asperity.prediction_band(table(levels, law=["hertz", "linear"], band=[100.0, 125.0, 160.0]))
-    panel, meaning = ensemble_figure(found, {"hertz": {"colour": "#0067a5", "law": "hertz"}})
+    panel, meaning, left = ensemble_figure(found, {"hertz": {"colour": "#0067a5", "law": "hertz"}})
     lines = {mark.label: mark for mark in panel.marks if isinstance(mark, Line)}
     np.testing.assert_allclose(lines["linear"].y, found["force_level"].sel(law="linear"))
     areas = [mark for mark in panel.marks if isinstance(mark, Area)]
@@ -99,3 +99,13 @@ def test_the_figure_shows_mean_and_band():
     np.testing.assert_allclose(areas[1].high, found["force_level_high"].sel(law="hertz"))
     assert "mean over 5 values of seed" in meaning
     assert "it holds the value of one more seed with a probability of 80 %" in meaning
+    assert not left
+
+
+def test_panels_of_other_keys_reach_from_first_to_last_and_are_counted_where_some_are_left_out():
+    levels = np.random.default_rng(2).normal(60.0, 3.0, (4, 9, 1, 3))
+    swept = table(levels, speed=np.arange(9.0), law=["hertz"], band=[100.0, 125.0, 160.0])
+    swept["speed"].attrs |= {"units": "m/s", "long_name": "speed"}
+    *panels, _, left = ensemble_figure(asperity.prediction_band(swept), {})
+    assert [panel.title.split()[2] for panel in (panels[0], panels[-1])] == ["0", "8"]
+    assert left == f"{len(panels)} of 9 values of speed are shown; the CSV file has all."

@@ -161,7 +161,7 @@ def test_labels_tell_every_fault_and_none_where_there_is_none():
 def test_a_figure_of_several_keys_says_which_part_it_shows_the_largest():
     table = written()[0].expand_dims(speed=[25.0, 30.0]).assign_attrs(sweep='{"speed": 0, "variant": 0}')
     table["speed"].attrs |= {"units": "Hz", "long_name": "speed"}
-    panel, _ = key_figure(table, None, "variant", {}, ["line_amplitude"])
+    panel, *_ = key_figure(table, None, "variant", {}, ["line_amplitude"])
     largest = table["line_amplitude"].max(["speed", "variant", "law"]).idxmax("part")
     assert panel.title.endswith(f", {largest.item()}")
     shown = table["line_amplitude"].sel(part=largest, speed=30.0, law="hertz")

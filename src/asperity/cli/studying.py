@@ -16,7 +16,7 @@ from asperity.cli.commands import taken_folder
 from asperity.errors import CaseError, InputError
 from asperity.laws import spec_of
 from asperity.progress import progress_bar
-from asperity.reporting import data, page, study_figures
+from asperity.reporting import chart, data, page, study_figures
 from asperity.reporting.figure import PageFigure
 from asperity.reporting.tables import ReportTable, text_cells
 from asperity.reporting.tables import table as report_table
@@ -90,9 +90,11 @@ def run_study(
         mean, scatter = mean_and_scatter(table) if several > 1 else (table, None)
         band = prediction_band(table) if several >= FEWEST and FORCE_LEVEL.name in table else None
         effect = effects(table) if VARIANT in table.dims and judged_levels(table) else None
-        told = _by_place(table, effect)
+        told, left = _by_place(table, effect)
         for words, found in told:
             _print_effects(words, found)
+        if left:
+            remark(left)
         if asked or not (told and _effects_say_all(table)):
             print_table(mean, asked or tables.USUAL, scatter, asked=bool(asked))
         for name in (name for name in asked if name not in table):
@@ -212,8 +214,8 @@ def _write(
         if effect is not None:
             names["effects"] = EFFECTS
             write_csv(new / EFFECTS, *tables.long_columns(effect, list(map(str, effect["effect"].dims))))
-        told = _by_place(table, effect)
-        blocks: list[page.Block] = [*_blocks(told)]
+        told, left = _by_place(table, effect)
+        blocks: list[page.Block] = [*_blocks(told, left)]
         blocks += _figures(mean, scatter, band, asked or tables.USUAL_IN_FIGURES)
         if table["completed"].any() and not (told and _effects_say_all(table)):
             blocks.append(_table(mean, asked or tables.USUAL))
@@ -279,23 +281,29 @@ def _effects_say_all(table: xarray.Dataset) -> bool:
     return bool(judged_levels(table)) and VELOCITY_LEVEL not in table
 
 
-def _by_place(table: xarray.Dataset, effect: xarray.Dataset | None) -> list[tuple[str, Effects]]:
-    """Effects of variants for each place on the other axes of a study, named; none without variants."""
+def _by_place(table: xarray.Dataset, effect: xarray.Dataset | None) -> tuple[list[tuple[str, Effects]], str]:
+    """Effects of variants for places on the other axes of a study, named, and how many of them are shown.
+
+    None without variants.
+    """
     if effect is None:
-        return []
+        return [], ""
     others = [key for key in json.loads(table.attrs["sweep"]) if key in effect.dims and key != VARIANT]
-    places = product(*(range(effect.sizes[key]) for key in others))
-    ats = [dict(zip(others, place, strict=True)) for place in places][: study_figures.MOST_PANELS]
+    places = list(product(*(range(effect.sizes[key]) for key in others)))
+    shown = [places[n] for n in chart.spread(len(places), study_figures.MOST_PANELS)]
+    ats = [dict(zip(others, place, strict=True)) for place in shown]
     words = [", ".join(f"{key} = {data.typed_words(effect[key])[n]}" for key, n in at.items()) for at in ats]
     found = zip(words, (Effects(effect.isel(at)) for at in ats), strict=True)
-    return [(told, of) for told, of in found if of.parts]  # none where the case as it is has failed
+    left = chart.part_shown(len(shown), len(places), f"values of {' and '.join(others)}")
+    return [(told, of) for told, of in found if of.parts], left  # none where the case as it is has failed
 
 
-def _blocks(told: Sequence[tuple[str, Effects]]) -> Iterator[ReportTable]:
+def _blocks(told: Sequence[tuple[str, Effects]], left: str) -> Iterator[ReportTable]:
     """A table of what each variant does."""
     for n, (words, of) in enumerate(told, 1):
         title = f"What helps, {words}" if words else "What helps?"
-        yield replace(effects_table(of), name=f"effects-{n}", title=title)
+        found = effects_table(of)
+        yield replace(found, name=f"effects-{n}", title=title, note=f"{found.note} {left}".rstrip())
 
 
 def _print_effects(words: str, of: Effects) -> None:

@@ -66,6 +66,11 @@ def spread(count: int, most: int) -> list[int]:
     return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(int)).tolist()
 
 
+def part_shown(shown: int, count: int, what: str) -> str:
+    """Say how many of something are shown where that is not all."""
+    return f"{shown} of {count} {what} are shown; the CSV file has all." if shown < count else ""
+
+
 def sequence(count: int) -> list[str]:
     """`count` colours from low to high; repeats nothing up to six."""
     picks = np.linspace(0, len(SEQUENCE) - 1, count).round().astype(int)

@@ -58,7 +58,8 @@ class Compared:
 
 def fit_figure(found: Sequence[Compared], *, stated: bool) -> Drawn:
     """Panels of measurements, each with what is predicted before and after."""
-    for each in found[:MOST_PANELS]:
+    shown = found[:MOST_PANELS]
+    for each in shown:
         marker = "o" if len(each.at) <= 60 else ""
         low, high = each.ends
         marks = (
@@ -67,12 +68,13 @@ def fit_figure(found: Sequence[Compared], *, stated: bool) -> Drawn:
             Line(each.at, each.fitted, "fitted", chart.VERMILLION, (), 1.8),
             Line(each.at, each.measured, "measured", chart.INK, (), 1.0, marker),
         )
-        shown = [each.measured, each.before, each.fitted]
+        values = [each.measured, each.before, each.fitted]
         label = f"{each.what} / {each.units}"
-        y = panels.log_axis(label, shown) if each.decade else panels.levels_axis(label, shown, span=60.0)
+        y = panels.log_axis(label, values) if each.decade else panels.levels_axis(label, values, span=60.0)
         yield Panel(_along(each), y, marks, each.title, height=3.4)
     band = "the scatter of what was measured" if stated else "an uncertainty that is usual for it"
     yield f"Shaded: 95 % by {band}."
+    yield chart.part_shown(len(shown), len(found), "measurements")
 
 
 def _along(each: Compared) -> Axis:

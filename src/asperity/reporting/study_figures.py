@@ -1,9 +1,10 @@
 """Figures of studies, seeds and optimised textures."""
 
 import json
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import product
+from itertools import chain, product
 from typing import Any
 
 import numpy as np
@@ -44,7 +45,9 @@ def ensemble_figure(bands: xarray.Dataset, looks: Looks) -> Drawn:
     The dataset is from `asperity.prediction_band`, whose ``meaning`` is the caption; looks of lines by law.
     """
     others = [dim for dim in bands[FORCE_LEVEL.name].dims if dim not in (LAW.name, BAND.name)]
-    for place in list(product(*(range(bands.sizes[dim]) for dim in others)))[:MOST_PANELS]:
+    places = list(product(*(range(bands.sizes[dim]) for dim in others)))
+    shown = [places[n] for n in chart.spread(len(places), MOST_PANELS)]
+    for place in shown:
         here = bands.isel(dict(zip(others, place, strict=True)))
         band = here[BAND.name].values
         marks = _shades(here)
@@ -63,6 +66,7 @@ def ensemble_figure(bands: xarray.Dataset, looks: Looks) -> Drawn:
         title = ", ".join(f"{key} = {data.typed_words(here[key].expand_dims('place'))[0]}" for key in others)
         yield Panel(panels.band_axis(band), axis, tuple(marks), title, height=3.2)
     yield str(bands.attrs["meaning"])
+    yield chart.part_shown(len(shown), len(places), f"values of {' and '.join(map(str, others))}")
 
 
 # --- an optimised texture
@@ -116,17 +120,18 @@ def key_figures(
 
     So that no legend mixes laws, what radiates, and values of keys; the parameters are those of `key_figure`.
     """
-    drawn = [name for name in names if name in mean and _says_something(mean[name])][:MOST_PANELS]
+    kept = [name for name in names if name in mean and _says_something(mean[name])]
+    drawn = kept[:MOST_PANELS]
     told: dict[str, list[str]] = {}
     for name in drawn:
         told.setdefault(_told_apart(mean, name, key), []).append(name)
+    left = chart.part_shown(len(drawn), len(kept), "quantities")
     for n, (what, some) in enumerate(told.items()):
         title = f"Over {key}" + (f", by {what}" if what and n else "")
-        yield f"key-{key}" + (f"-{what}" if n else ""), title, key_figure(mean, scatter, key, looks, some)
+        parts = chain(key_figure(mean, scatter, key, looks, some), [left] * (n == len(told) - 1))
+        yield f"key-{key}" + (f"-{what}" if n else ""), title, parts
     if FORCE_LEVEL.name in mean:
-        panel = _bands(mean, key)
-        words = f"Force level of {panel.title}: one-third octaves, a line for each value of {key}."
-        yield f"bands-{key}", f"Force level by {key}", iter((panel, words))
+        yield f"bands-{key}", f"Force level by {key}", _bands(mean, key)
 
 
 def _told_apart(table: xarray.Dataset, name: str, key: str) -> str:
@@ -159,6 +164,8 @@ def key_figure(
     if others:
         told.append(f"{_main(mean)} alone, a line for each {' and '.join(others)}")
     yield f"{key}: {', '.join(told)}."
+    count = math.prod(mean.sizes[name] for name in others)
+    yield chart.part_shown(min(count, MOST_LINES), count, f"values of {' and '.join(others)}")
 
 
 def ends_in_words(table: xarray.Dataset, names: Sequence[str]) -> str:
@@ -243,7 +250,8 @@ def _lines(
     own = [str(dim) for dim in held.dims if dim not in (key, *others, LAW.name, *PLACES)]
     if others:
         here = law | {dim: _largest(held.sel(law), dim) for dim in own}
-        found = list(product(*(range(table.sizes[dim]) for dim in others)))[:MOST_LINES]
+        every = list(product(*(range(table.sizes[dim]) for dim in others)))
+        found = [every[n] for n in chart.spread(len(every), MOST_LINES)]
         for place, look in zip(found, sequence_styles(len(found)), strict=True):
             at = {dim: table[dim].values[n] for dim, n in zip(others, place, strict=True)}
             words = [f"{dim} {data.typed_words(table[dim])[n]}" for dim, n in zip(others, place, strict=True)]
@@ -298,7 +306,7 @@ def _key_axis(key: xarray.DataArray) -> Axis:
     return Axis(label, low - room, high + room, linked=str(key.name))
 
 
-def _bands(table: xarray.Dataset, key: str) -> Panel:
+def _bands(table: xarray.Dataset, key: str) -> Drawn:
     """Force level of the first law in each band, a line for each value of the key."""
     count = table.sizes[key]
     others = _others(table, key)
@@ -312,4 +320,7 @@ def _bands(table: xarray.Dataset, key: str) -> Panel:
         marks.append(Line(band, level, words[at], marker="o", **look))
     first = "".join(f", {name} {data.typed_words(table[name])[0]}" for name in others)
     axis = Axis("force level / dB re 1 N")
-    return Panel(panels.band_axis(band), axis, tuple(marks), f"{_main(table)}{first}", height=3.2)
+    title = f"{_main(table)}{first}"
+    yield Panel(panels.band_axis(band), axis, tuple(marks), title, height=3.2)
+    yield f"Force level of {title}: one-third octaves, a line for each value of {key}."
+    yield chart.part_shown(len(shown), count, f"values of {key}")

@@ -231,8 +231,7 @@ def contact_levels(tree: DataTree, lines: Lines) -> Drawn:
     yield panels.band_panel(tree, lines, label, levels, span=100.0, height=4.2)
     main = data.main_law(tree, CONTACT_FORCE_LEVEL)
     yield f"Force of each contact by the main law, {main}, per one-third octave."
-    if len(every) > MOST_LINES:
-        yield f"{MOST_LINES} of {len(every)} contacts are drawn; the file has all."
+    yield chart.part_shown(len(shown), len(every), "contacts")
     yield panels.shaded_words(tree)
 
 
