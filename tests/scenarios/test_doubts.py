@@ -7,10 +7,12 @@ import pytest
 
 import small_cases
 from asperity.case import PRESETS
+from asperity.case.any_case import entries
 from asperity.case.cases import as_case, demo_case, parse_case, template
 from asperity.cli import main
 from asperity.contact.batched import UNTRIED, processor
 from asperity.errors import OutOfRangeWarning, PhysicsWarning
+from asperity.reference.railways import TRACKS
 from asperity.running import prepare_case
 
 BALL, BEARING = small_cases.BALL | {"settling": "50 ms"}, small_cases.BEARING
@@ -76,6 +78,55 @@ def test_a_device_on_which_nothing_was_ever_run_is_told(monkeypatch):
 def test_a_size_in_a_wrong_unit_is_doubted_with_what_it_is_beside(keys, words):
     told = doubts(as_case(keys))
     assert any(re.search(words, each) for each in told), told
+
+
+OF_A_TRACK = {
+    "track": {
+        "bending_stiffness": (None, r"a bar of steel that bends as easily for its mass is 5.92 mm high"),
+        "pad_stiffness": ("hard pads have 3000 MN/m", "The rail yields by .* mm"),
+        "ballast_stiffness": ("hard pads have 3000 MN/m", "The rail yields by .* mm"),
+        "under_sleeper_pad_stiffness": ("hard pads have 3000 MN/m", "The rail yields by .* mm"),
+        "subgrade_stiffness": ("hard pads have 3000 MN/m", "The rail yields by .* mm"),
+        "pad_damping": ("spring beside it, 200 MN/m, at 1.77 Hz", "at 1.77·10⁶ Hz"),
+        "ballast_damping": ("spring beside it, 150 MN/m, at 0.497 Hz", "at 497000 Hz"),
+        "sleeper_bending_stiffness": (None, "a bar of steel that bends as easily for its mass is .* mm high"),
+    },
+    "sideways": {
+        "pad_stiffness": ("the vertical one is 200 MN/m",) * 2,
+        "ballast_stiffness": ("the vertical one is 150 MN/m",) * 2,
+        "pad_roll_stiffness": ("that of an even pad under the foot is 0.375 MN m",) * 2,
+        "bending_stiffness": (None, "a bar of steel .* is 2.84 mm high"),
+        "shear_stiffness": ("waves of shear would run at 74400 m/s", "waves of shear would run at 74.4 m/s"),
+        "torsional_stiffness": ("inertia of 0.279 kg m, would run at 25300 m/s", "would run at 25.3 m/s"),
+        "polar_inertia": ("inertia of 280 kg m, would run at 25.3 m/s", "would run at 25300 m/s"),
+        "rotary_inertia": ("its radius of gyration would be 815 mm", None),
+    },
+}
+
+
+@pytest.mark.parametrize(
+    ("section", "name", "words"),
+    [(section, *each) for section, keys in OF_A_TRACK.items() for each in keys.items()],
+)
+def test_keys_of_a_track_in_a_wrong_unit_are_doubted_and_their_examples_are_not(section, name, words):
+    """A thousand times its example and a thousandth; None where that is refused, or as good as none."""
+    example, unit = next(
+        (float(entry.key.example.split()[0]), entry.key.example.split(maxsplit=1)[1])
+        for entry in entries(type(as_case(WHEEL)))
+        if entry.dotted == f"{section}.{name}"
+    )
+    for times, told in ((1e3, words[0]), (1e-3, words[1]), (1.0, "")):
+        if told is None:
+            continue
+        keys = {"track": {}, section: {name: f"{times * example:g} {unit}"}}
+        found = [each for each in doubts(as_case(WHEEL | keys)) if "Is the unit right?" in each]
+        assert bool(found) is bool(told), found
+        assert not told or any(re.search(told, each) for each in found), found
+
+
+@pytest.mark.parametrize("name", TRACKS)
+def test_no_named_track_is_doubted(name):
+    assert not [each for each in doubts(as_case(WHEEL | {"track": {"name": name}})) if "unit" in each]
 
 
 @pytest.mark.parametrize("kind", [*PRESETS, "demo"])

@@ -4,14 +4,17 @@ import math
 
 from asperity.case.ball_bearing import BearingUnderLoad
 from asperity.case.scene import Case
+from asperity.case.sideways import SidewaysKeys
 from asperity.contact.batched import UNTRIED, find_device
 from asperity.contact.hertz import Hertz
 from asperity.errors import OutOfRangeWarning
 from asperity.laws import spec_of
+from asperity.reference.materials import material
 from asperity.rolling.steps import warn_if_coarse
 from asperity.speeds import slowest
 from asperity.structures.body import GRAVITY
 from asperity.structures.track import Track
+from asperity.structures.track_parameters import LAYERS
 from asperity.units import written
 from asperity.written_numbers import between, in_newtons, rounded
 
@@ -27,6 +30,19 @@ LOWEST_HEARD = 10.0
 """Hz, below which waves that are passed are heard by nobody."""
 SOFTEST_TRACK = 0.01
 """Deflection under a wheel at rest, m, that no track reaches: they have a few millimetres at most."""
+HARDEST_LAYER = 2e10
+"""N/m, stiffer than any pad or bed of a track: hard pads have 3 GN/m at most."""
+FULLY_LOSSY = 5.0, 1e5
+"""Hz between which a damper of a track is as stiff as the spring beside it: 18 Hz to 42 kHz are printed."""
+BENDS = 20.0
+"""m²/s, less than the root of any rail's or sleeper's bending stiffness over mass per length: 100 to 400."""
+SHEARS, TWISTS = (500.0, 6000.0), (100.0, 4000.0)
+"""m/s, between which waves of shear and of twist run along rails: about 2000 and 800."""
+SECTION_OF_A_RAIL = "bending_stiffness", "shear_stiffness", "rotary_inertia"
+WIDEST_RAIL = 0.2
+"""m, more than any rail's radius of gyration."""
+OF_VERTICAL = 0.01, 10.0
+"""Times the vertical stiffness between which the lateral one of a layer lies, and that against roll."""
 LIGHTLY_LOADED = 0.1
 """Share of the weight of the shaft that a bearing carries at least."""
 HEAVIEST = 1e5
@@ -68,9 +84,97 @@ def doubt_sizes(case: Case, over: object) -> None:
             at = between(*map(rounded, passed))
             told = f"it is passed at {at} Hz, and spectra go from some {LOWEST_HEARD:g} Hz to "
             _warn("surface.corrugation_wavelength", wave, "m", f"{told}{highest:g} Hz", "mm")
-    if isinstance(over, Track) and (bent := over.static_deflection(load)) > SOFTEST_TRACK:
+    if isinstance(over, Track):
+        _doubt_layers(over, case.over_name, load)
+        _doubt_rail(over, case.over_name, over.mass_per_length)
+        if over.sleeper_bending_stiffness is not None:
+            mass = 2.0 * over.sleeper_mass / over.sleeper_length
+            _doubt_bending(
+                f"{case.over_name}.sleeper_bending_stiffness", over.sleeper_bending_stiffness, mass
+            )
+        _doubt_sideways(case, over)
+
+
+def _doubt_layers(track: Track, section: str, load: float) -> None:
+    """Warn of springs and dampers between rail and ground that no track has, under a wheel's load, N."""
+    if (bent := track.static_deflection(load)) > SOFTEST_TRACK:
         told = f"tracks yield by a few millimetres at most. {UNIT} Look at pads, ballast and subgrade."
         OutOfRangeWarning.warn(f"The rail yields by {rounded(1e3 * bent)} mm under a wheel at rest: {told}")
+    for layer in LAYERS:
+        stiffness, damping = (getattr(track, f"{layer}_{each}") for each in ("stiffness", "damping"))
+        if stiffness is None or math.isinf(stiffness):
+            continue
+        if stiffness > HARDEST_LAYER:
+            told = "hard pads have 3000 MN/m, and all other layers are softer"
+            _warn(f"{section}.{layer}_stiffness", stiffness, "N/m", told, "MN/m")
+        elif damping:
+            lossy = stiffness / (2.0 * math.pi * damping)
+            if not FULLY_LOSSY[0] <= lossy <= FULLY_LOSSY[1]:
+                spring = written(stiffness, "N/m", "MN/m", exactly=False)
+                told = (
+                    f"it is as stiff as the spring beside it, {spring}, at {rounded(lossy)} Hz, and others "
+                )
+                told += f"at {FULLY_LOSSY[0]:g} Hz to {FULLY_LOSSY[1] / 1e3:g} kHz"
+                _warn(f"{section}.{layer}_damping", damping, "N s/m", told, "kN s/m")
+
+
+def _doubt_rail(keys: Track | SidewaysKeys, section: str, mass: float) -> None:
+    """Warn of a rail, of a mass per length, kg/m, that bends, shears or turns as none does."""
+    bending, shear, rotary = (getattr(keys, name, None) for name in SECTION_OF_A_RAIL)
+    if bending is not None:
+        _doubt_bending(f"{section}.bending_stiffness", bending, mass)
+    if shear is not None:
+        _doubt_waves(f"{section}.shear_stiffness", shear, "N", mass, "shear", SHEARS)
+    if rotary is not None and (radius := math.sqrt(rotary / mass)) > WIDEST_RAIL:
+        told = f"its radius of gyration would be {rounded(1e3 * radius)} mm"
+        _warn(f"{section}.rotary_inertia", rotary, "kg m", told)
+
+
+def _doubt_waves(
+    key: str, stiffness: float, unit: str, inertia: float, what: str, speeds: tuple[float, float]
+) -> None:
+    """Warn of a stiffness, over an inertia per length, by which waves run along a rail as in none."""
+    speed = math.sqrt(stiffness / inertia)
+    if math.isfinite(speed) and not speeds[0] <= speed <= speeds[1]:
+        told = (
+            f"waves of {what} would run at {rounded(speed)} m/s, in rails {speeds[0]:g} to {speeds[1]:g} m/s"
+        )
+        _warn(key, stiffness, unit, told, f"M{unit}")
+
+
+def _doubt_bending(key: str, stiffness: float, mass: float) -> None:
+    """Warn of a beam, of a mass per length, kg/m, that is far too slender."""
+    if math.sqrt(stiffness / mass) < BENDS:
+        steel = material("steel")
+        thick = math.sqrt(12.0 * stiffness / mass * steel.density / steel.youngs_modulus)
+        told = f"a bar of steel that bends as easily for its mass is {rounded(1e3 * thick)} mm high"
+        _warn(key, stiffness, "N m^2", told, "kN m^2")
+
+
+def _doubt_sideways(case: Case, track: Track) -> None:
+    """Warn of stiffnesses of a rail sideways that are far from those up and down."""
+    if "sideways" not in case.inner:
+        return
+    keys = case.sideways
+    width = case.track.rail_foot_width
+    _doubt_rail(keys, "sideways", track.mass_per_length)
+    if {"torsional_stiffness", "polar_inertia"} & keys.given().keys():
+        lateral = keys.model(track.regular, width)
+        what = f"twist, of a polar inertia of {rounded(lateral.polar_inertia)} kg m,"
+        twist = lateral.torsional_stiffness, "N m^2", lateral.polar_inertia, what, TWISTS
+        _doubt_waves("sideways.torsional_stiffness", *twist)
+    roll = track.pad_stiffness * width**2 / 12.0
+    for name, vertical, unit, what in (
+        ("pad_stiffness", track.pad_stiffness, "N/m", "the vertical one"),
+        ("pad_roll_stiffness", roll, "N m", "that of an even pad under the foot"),
+        ("ballast_stiffness", track.ballast_stiffness, "N/m", "the vertical one"),
+    ):
+        given = getattr(keys, name)
+        if given is None or math.isinf(vertical):
+            continue
+        if not OF_VERTICAL[0] <= given / vertical <= OF_VERTICAL[1]:
+            told = f"{what} is {written(vertical, unit, f'M{unit}', exactly=False)}"
+            _warn(f"sideways.{name}", given, unit, told, f"M{unit}")
 
 
 def doubt_bearing(case: BearingUnderLoad) -> None:
