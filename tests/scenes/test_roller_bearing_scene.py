@@ -15,6 +15,7 @@ from asperity.laws import Areal
 from asperity.laws.film import WithFilm
 from asperity.reduction.stiffness import ForceCurve
 from asperity.rolling.bearing import BearingRings, roll_bearing
+from asperity.scenarios import run_time
 from asperity.scenarios.prepared_bearing import expected, prepare_bearing, raceways_of
 from asperity.scenarios.roller_raceways import OnRollerRaceway, on_surface, surface_on
 from asperity.scenes.computed_bearing import compute_bearing
@@ -194,6 +195,15 @@ def test_with_the_step_that_is_chosen_no_contact_is_softened(changes):
     assert 4.0 < 1.0 / (case.step * case.ball_resonance) < 6.0
     (run,) = compute_bearing(prepare_bearing(case), lambda *_: None).runs.values()
     assert not run.softening.any()
+
+
+def test_the_time_that_is_told_is_that_which_rollers_take():
+    """Seven runs of 7 and 13 rollers, dry and with oil, took 1.6 to 1.85 µs a step of one, at pace one."""
+    case = as_case(CASE | {"duration": "0.1 s", "settling": "5 ms", "laws": ["areal"]})
+    prepared = prepare_bearing(case)
+    _, work = expected(prepared)
+    told = work.time.parts["the law areal"] / run_time.pace() - run_time.LAW
+    assert 1.6e-6 < told / (work.steps * case.bearing.bearing.balls) < 1.85e-6
 
 
 @pytest.fixture(scope="module")

@@ -46,8 +46,10 @@ ON = {
     "fault": "the fault",
 }
 """Sections of a case that say what is on a part."""
-STEP_TIME, SOLUTION_TIME = 2.0e-6, 1e-3
-"""Processor times of a step of one ball with its record and spectra, and of a contact of a scan, s."""
+STEP_TIME = {"ball": 2.0e-6, "roller": 1.75e-6}
+"""Processor time of a step of one ball or roller with its record and spectra, s; of rollers from seven runs."""
+SOLUTION_TIME = 1e-3
+"""Processor time of a contact of a scan, s."""
 CELL_TIME = 3.5e-8
 """Time of a contact under a load over a fault, for each of its cells, s."""
 SEEDS = 1000
@@ -170,7 +172,7 @@ def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], preparin
             solutions[f"scan of the {NAMES[name]}"] = positions * reducing.STATES
     for law in (law for law in case.laws if spec_of(law).solved_every_step):
         solutions[law] = steps * int(found.touching.max() + found.bearing.balls)
-    rolled_once = STEP_TIME * steps * found.bearing.balls
+    rolled_once = STEP_TIME[found.bearing.ELEMENT] * steps * found.bearing.balls
     parts = {
         "start and report": run_time.START,
         "each part alone": rolled_once * (runs - len(case.laws)),
