@@ -47,7 +47,7 @@ ON = {
 }
 """Sections of a case that say what is on a part."""
 STEP_TIME = {"ball": 2.0e-6, "roller": 1.75e-6}
-"""Processor time of a step of one ball or roller with its record and spectra, s; of rollers from seven runs."""
+"""Processor time of a step of a ball or a roller with its record and spectra, s; rollers by seven runs."""
 SOLUTION_TIME = 1e-3
 """Processor time of a contact of a scan, s."""
 CELL_TIME = 3.5e-8
