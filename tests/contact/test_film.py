@@ -1,6 +1,7 @@
 """A film of oil: printed examples, other fits, closed forms; how stiff, damped and thick it is; an oil."""
 
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -119,6 +120,28 @@ def test_dowsons_film_is_within_a_fifth_where_no_oil_is_compressed_and_too_thick
     compressed = solved_film(*numbers, **grid)
     assert found[0] / compressed[0] == pytest.approx(central, abs=0.015)
     assert found[1] == pytest.approx(compressed[1], rel=0.2)
+
+
+@pytest.mark.parametrize(
+    ("fit", "fitted", "beyond"),
+    [
+        (
+            "pan",
+            "within a fifth of solutions of Reynolds' equation",
+            r"a third thicker at G 7500, .* twice as thick",
+        ),
+        (
+            "dowson",
+            "for an oil that is not compressed",
+            r"10 to 45 % too thick for an oil that is compressed",
+        ),
+    ],
+)
+def test_what_is_told_of_formulas_of_lines_is_what_solutions_have(fit, fitted, beyond):
+    """By how much is measured in the test before and in the one after."""
+    formula = films.LINES[fit]
+    assert formula.fitted_to.endswith(fitted)
+    assert re.search(beyond, formula.beyond[0])
 
 
 @pytest.mark.parametrize(
