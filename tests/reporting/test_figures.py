@@ -10,6 +10,7 @@ from report_tree import LAWS, PARTS, laws_in, report_tree, uncertain, with_force
 from asperity.laws import spec_of
 from asperity.reporting.chart import Boxes, Field, Line, Note, Rules, as_seen
 from asperity.reporting.data import law_entries, missing
+from asperity.reporting.fit_figures import Compared, fit_figure
 from asperity.reporting.texture_figures import distribution, height_histogram
 from asperity.scenes.figures.force import TO_REFERENCE
 from asperity.schema import bearing, contact
@@ -213,3 +214,13 @@ def test_a_histogram_of_few_heights_is_in_its_panel():
     panel = height_histogram({"heights": distribution(heights)}, (1e-9, "nm"), beside=False)
     steps = panel.marks[0]
     assert panel.y.high >= np.nanmax(steps.y)
+
+
+@pytest.mark.parametrize(
+    ("count", "left"), [(8, ""), (9, "8 of 9 measurements are shown; the CSV file has all.")]
+)
+def test_measurements_of_a_fit_that_are_left_out_are_counted(count, left):
+    at = np.array([100.0, 200.0])
+    one = Compared("decay rate", "dB/m", "frequency (Hz)", "rates.csv", at, at, at, at, at, 0.0)
+    *panels, _, told = fit_figure([one] * count, stated=True)
+    assert (len(panels), told) == (8, left)

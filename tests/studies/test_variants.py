@@ -11,6 +11,7 @@ from executors import Here
 
 import asperity
 from asperity.case.cases import as_case
+from asperity.cli.studying import _blocks, _by_place
 from asperity.errors import CaseError, InputError
 from asperity.scenes import schema
 from asperity.scenes.figures.effects import Effects, effects_table
@@ -216,6 +217,19 @@ def test_effects_are_differences_within_one_texture(table):
     assert float(one["effect"].sel(variant="soft", radiator="rail")) == pytest.approx(paired[0])
     assert np.isnan(one["effect_error"]).all()
     assert effects(table, "force_level_a")["effect"].dims == ("variant",)
+
+
+@pytest.mark.parametrize(("count", "words"), [(6, ""), (8, "6 of 8 values of speed are shown; the CSV")])
+def test_effects_at_more_places_than_are_shown_are_counted(table, count, words):
+    """From the first place to the last; what is left out is told under each table."""
+    speeds = np.arange(1.0, count + 1.0)
+    swept = table.isel(seed=0, drop=True).expand_dims(speed=speeds)
+    swept["speed"].attrs |= {"units": "m/s", "long_name": "speed"}
+    swept.attrs |= {"sweep": json.dumps({"speed": speeds.tolist(), "variant": VARIANTS})}
+    told, left = _by_place(swept, effects(swept))
+    assert [told[0][0], told[-1][0]] == ["speed = 1 m/s", f"speed = {count} m/s"]
+    assert left.startswith(words)
+    assert all((" are shown" in block.note) is bool(words) for block in _blocks(told, left))
 
 
 def test_seeds_that_draw_nothing_say_nothing_of_chance(table, cache):
