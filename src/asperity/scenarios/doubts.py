@@ -33,7 +33,7 @@ SOFTEST_TRACK = 0.01
 HARDEST_LAYER = 2e10
 """N/m, stiffer than any pad or bed of a track: hard pads have 3 GN/m at most."""
 FULLY_LOSSY = 5.0, 1e5
-"""Hz between which a damper of a track is as stiff as the spring beside it: 18 Hz to 42 kHz are printed."""
+"""Hz between which a damper of a track is as stiff as its spring: of named ones 135 Hz to 2.7 kHz."""
 BENDS = 20.0
 """m²/s, less than the root of any rail's or sleeper's bending stiffness over mass per length: 100 to 400."""
 SHEARS, TWISTS = (500.0, 6000.0), (100.0, 4000.0)
