@@ -255,6 +255,15 @@ def test_the_filtered_linear_contact_is_linear():
 # --- presets as they are written, and another scene, with a structure: one file and one line
 
 
+@pytest.mark.filterwarnings("ignore::asperity.errors.PhysicsWarning")  # of so short a record
+@pytest.mark.parametrize("kind", ["ball-bearing", "roller-bearing"])
+def test_what_new_prints_of_a_bearing_runs_and_says_which_part_is_heard(kind):
+    tree = asperity.run(parse_case(template(kind)).with_(duration=0.05, settling=0.01))
+    assert "% from the inner raceway" in tree.attrs["verdict"]
+    grades = {check["grade"] for check in json.loads(tree["contact"].attrs["validity"])}
+    assert grades <= {"", "note"}
+
+
 @pytest.mark.usefixtures("in_cache_of_runs")  # the ball's scans are those of the bodies
 @pytest.mark.parametrize(
     "kind", [pytest.param(kind, marks=[pytest.mark.long] * (kind != "wheel-on-rail")) for kind in CASES]
