@@ -14,7 +14,7 @@ SMOOTH = {"laws": ["hertz", "linear"], "surface": {"smooth": True}, "settling": 
 PLANE = {name: each for name, each in small_cases.BALL.items() if name != "ball"} | SMOOTH
 PLANE |= {"kind": "bodies", "over": "plane", "body": {"load": "30 N"}}
 PERFECT = {name: each for name, each in small_cases.BEARING.items() if name != "fault"}
-PERFECT |= {"radial": "0 N", "axial": "100 N", "settling": "0 s"}
+PERFECT |= {"radial": "0 N", "axial": "100 N", "settling": "0 s", "sampling_rate": "16 kHz"}
 NOISE = re.compile(r"10⁻[⁹¹][⁰¹²³⁴⁵⁶⁷⁸⁹]*|[−-][23]\d\d(?:\.\d+)? dB|0\.0{6,}\d|\d pN|\d [pf]m/s")
 
 
@@ -31,6 +31,10 @@ def test_rounding_is_told_as_nothing_in_verdict_page_and_result(keys, said):
         for node in tree.subtree:
             if name in node.data_vars:
                 assert float(np.ptp(node[name].values, axis=-1).max(initial=0.0)) == 0.0
+    if "bearing" in tree.children:
+        velocity = tree["bearing"]["band_velocity"].values
+        np.testing.assert_array_equal(velocity[..., :2], 0.0)
+        assert np.isnan(velocity[..., 2]).all()  # not sampled finely enough
     heard = tree["spectra"].dataset
     for name in ("force_level", "velocity_amplitude"):
         assert name not in heard or np.isnan(heard[name].values).all()
@@ -46,6 +50,7 @@ def test_perfect_surfaces_of_a_bearing_with_waves_under_an_axial_load_have_no_ve
     tree = run(as_case(PERFECT | {"inner_raceway": {"waviness": "0.2 um"}}))
     found = tree["bearing"].dataset
     assert found["source"].values[0] == "perfect surfaces"
+    assert np.isnan(found["alone_velocity"].values[:, 2]).all()
     perfect, waves = found["alone_velocity"].values[:, :2]  # the record is not sampled finely enough for more
     np.testing.assert_array_equal(perfect, 0.0)
     assert (waves > 0.0).all()

@@ -404,7 +404,7 @@ def _accelerations(case: BearingUnderLoad, aim: BearingAim, progress: Progress) 
         # of what is found it is warned
         with PhysicsWarning.ignored(), one_thread_in_linear_algebra():
             (found,) = compute_bearing(prepare_bearing(short), progress).runs.values()
-        return {"acceleration": found.acceleration * found.vibrates}
+        return {"acceleration": found.acceleration}
 
     return made(Store(), form.case_key("bearing-waves", FORMAT, short, aim.law), rolled)["acceleration"]
 

@@ -12,6 +12,7 @@ from typing import Any, TypeVar
 import numpy as np
 from xarray import DataArray, DataTree
 
+from asperity.arguments import shown
 from asperity.errors import InputError
 from asperity.reporting import chart
 from asperity.schema import Attribute, Entry, bearing, provenance, rolling, spectra
@@ -32,6 +33,12 @@ Made = TypeVar("Made")
 
 class Missing(KeyError):
     """A result lacks what is asked for, or has nothing of it to show."""
+
+
+def refuse_no_result(result: object) -> None:
+    """Refuse what is no result of a run."""
+    if not isinstance(result, DataTree):
+        raise InputError("result", shown(result), "what asperity.run or asperity.open_result returned")
 
 
 def unless_missing(make: Callable[[DataTree], Made | None], tree: DataTree) -> Made | None:

@@ -10,6 +10,7 @@ from xarray import DataArray, DataTree
 from asperity.arguments import FilePath, file_path, one_of, require, shown
 from asperity.errors import InputError
 from asperity.files import together, write_bytes
+from asperity.reporting import data
 from asperity.reporting.sound import Sound, pass_by_pressure
 from asperity.schema.rolling import LAW, TIME
 from asperity.text_files import write_csv
@@ -68,8 +69,7 @@ def write_signals(
     >>> asperity.write_signals(asperity.run(case), "signals")[0].name
     'signals.uff'
     """
-    if not isinstance(result, DataTree):
-        raise InputError("result", shown(result), "what asperity.run or asperity.open_result returned")
+    data.refuse_no_result(result)
     one_of("format of the signals", format, FORMATS)
     folder = file_path("signals", path, "the path of a folder")
     channels = [each for each in channels_of(result, what) if format == "uff" or not each.is_spectrum]

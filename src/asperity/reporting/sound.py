@@ -14,6 +14,7 @@ from xarray import DataArray, DataTree
 from asperity.arguments import Array, FilePath, file_path, shown
 from asperity.errors import InputError
 from asperity.files import together, write_bytes
+from asperity.reporting import data
 from asperity.schema.rolling import CONTACT, CONTACT_FORCE, LAW, SPEED, TIME
 from asperity.spectra import HALF_BAND, a_weighting, band_energies, energy_sum
 from asperity.text_files import write_csv
@@ -171,8 +172,7 @@ def listen(result: DataTree, path: FilePath, *, what: str | None = None, matched
     >>> files[0].suffix
     '.wav'
     """
-    if not isinstance(result, DataTree):
-        raise InputError("result", shown(result), "what asperity.run or asperity.open_result returned")
+    data.refuse_no_result(result)
     folder = file_path("sounds", path, "the path of a folder")
     sounds = sounds_of(result, what)
     heard = [sound.weighted for sound in sounds]

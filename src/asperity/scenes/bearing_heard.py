@@ -41,12 +41,15 @@ def heard_group(case: BearingUnderLoad, runs: Mapping[str, RolledBearing]) -> Va
     slip = max(case.cage_slip) + RESOLVED
     found = [diagnostics.explained_lines(each, families, slip=slip, harmonics=HARMONICS) for each in struck]
     clear = [diagnostics.clear_families(each, SILENT) for each in found]
-    judged = [[band_velocities(one, rate, quantity="acceleration") for one in law] for law in signals]
-    for n in (
-        n for n, run in enumerate(runs.values()) if not run.vibrates
-    ):  # what rounding leaves is no result
+    judged = [
+        [band_velocities(one * run.vibrates, rate, quantity="acceleration") for one in run.acceleration]
+        for run in runs.values()
+    ]
+    for n, run in enumerate(runs.values()):
+        if run.vibrates:
+            continue
+        # what rounding leaves is no result
         lines[n], struck[n] = ((at, np.full_like(size, np.nan)) for at, size in (lines[n], struck[n]))
-        judged[n] = [np.zeros_like(each) for each in judged[n]]
         found[n] = {
             part: replace(each, **{what: np.nan * getattr(each, what) for what in LINES.values()})
             for part, each in found[n].items()

@@ -15,7 +15,7 @@ def parts_group(computed: ComputedBearing) -> Values:
     velocities = list[Array]()
     by_chance = list[Array]()
     for run in computed.alone.values():
-        signal = run.acceleration[0] * run.vibrates
+        signal = run.acceleration[0]
         velocities.append(band_velocities(signal, rate, quantity="acceleration"))
         by_chance.append(band_deviations(signal, rate))
     return {

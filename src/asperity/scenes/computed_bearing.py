@@ -142,7 +142,7 @@ def rolled_alone(prepared: PreparedBearing, progress: Progress) -> dict[str, Rol
         others = case.with_(laws=[BY_PARTS], **{key: None for key in textured if key != kept})
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", PhysicsWarning)  # of the whole bearing it has been warned
-            found[name] = compute_bearing(prepare_bearing(others), progress).rolled[BY_PARTS]
+            found[name] = compute_bearing(prepare_bearing(others), progress).runs[BY_PARTS]
     return found
 
 

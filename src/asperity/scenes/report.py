@@ -182,8 +182,7 @@ def report(result: xarray.DataTree, path: FilePath, figures: str | None = None) 
     >>> page.name, len(list(page.parent.glob("*.csv"))) > 3  # one for each figure
     ('report.html', True)
     """
-    if not isinstance(result, xarray.DataTree):
-        raise InputError("result", shown(result), "what asperity.run or asperity.open_result returned")
+    data.refuse_no_result(result)
     target = _page_in("report", path)
     format = None if figures is None else figure_format("figures", figures)
     with together(target.parent, last=target.name) as new:

@@ -129,14 +129,11 @@ def write_metadata(folder: Path, labels: Sequence[Mapping[str, Any]]) -> None:
 
 def _of_label(label: Mapping[str, Any], row: Mapping[str, Any]) -> dict[str, Any]:
     """What the study says of a recording, beside its case."""
-    below, rms = (label.get(name) for name in ("noise_below [dB]", "noise_rms [m/s2]"))
-    noise = (
-        "none"
-        if below is None and rms is None
-        else f"{rms} m/s^2 rms"
-        if below is None
-        else f"{below} dB below"
-    )
+    noise = "none"
+    if (rms := label.get("noise_rms [m/s2]")) is not None:
+        noise = f"{rms} m/s^2 rms"
+    if (below := label.get("noise_below [dB]")) is not None:
+        noise = f"{below} dB below"
     named = str(label.get("variant", row["fault_type"]))
     return {"native_label": named, "noise": noise, "path": str(label.get("path", "none"))}
 
