@@ -4,6 +4,8 @@ import csv
 import importlib
 import json
 import re
+import subprocess
+import sys
 import tracemalloc
 from pathlib import Path
 
@@ -207,6 +209,30 @@ def test_columns_of_short_numbers_take_few_times_the_memory_of_their_heights(col
         assert tracemalloc.get_traced_memory()[1] < 4.05 * 8 * points
     finally:
         tracemalloc.stop()
+
+
+READING = """
+from pathlib import Path
+from asperity.surfaces.readers import read_surface
+peaks = []
+for name in ("few.txt", "many.txt"):
+    surface = read_surface(name, height_unit="nm", pixel="1 um")
+    _, _, largest = Path("/proc/self/status").read_text().partition("VmHWM:")
+    peaks.append(1024 * int(largest.split()[0]))
+print((peaks[1] - peaks[0]) / surface.heights.nbytes)
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the largest size of a process is told elsewhere")
+@pytest.mark.parametrize("columns", [1, 4])
+def test_numbers_of_a_text_are_never_held_twice(columns):
+    """Neither as they were written nor in another unit; beside them stands the text, a quarter of them."""
+    digits = np.random.default_rng(0).integers(0, 10, (4_000_000 // columns, columns))
+    lines = [b" ".join(row) for row in digits.astype("S1")]
+    Path("many.txt").write_bytes(b"\n".join(lines))
+    Path("few.txt").write_bytes(b"\n".join(lines[:10_000]))
+    told = subprocess.run([sys.executable, "-c", READING], capture_output=True, text=True, check=True)
+    assert float(told.stdout) < 2.5
 
 
 @pytest.mark.parametrize(("titles", "told"), [

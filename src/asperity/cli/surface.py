@@ -112,8 +112,9 @@ def _levelled(file: Path, steps: recipes.Recipe, title: str) -> tuple[Surfaces, 
         "spacing": np.atleast_1d(sized[0].spacing),
         "missing_share": max(surface.missing_share for surface in sized),
     }
-    shown = surfaces if isinstance(surfaces[0], Profile) else surfaces[:1]
-    return [each.levelled() for each in shown], sizes
+    shown = len(surfaces) if isinstance(surfaces[0], Profile) else 1
+    del read, lines, sized
+    return [surfaces.pop(0).levelled() for _ in range(shown)], sizes
 
 
 def _side_by_side(surfaces: Surfaces, wanted: bool | None) -> tuple[Profile, ...]:

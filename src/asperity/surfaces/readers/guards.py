@@ -145,9 +145,11 @@ def surfaces_of(array: NDArray[Any], spacing: tuple[float, float], source: str) 
     """Wrap a bare array of heights, m: one axis is a line, two are a map, x first, three are maps.
 
     A 2-D array with a single row or column is a line, too: of the spacing (dx, dy), m, one along x takes dx,
-    one along y dy. Nobody else writes to the array: it is kept as it is.
+    one along y dy. Nobody else writes to the array, or to what it is a view of: it is kept as it is.
     """
-    array.flags.writeable = False
+    for fixed in (array, array.base):
+        if isinstance(fixed, np.ndarray):
+            fixed.flags.writeable = False
     if array.ndim == 3 and len(array):
         return [HeightMap(sample, spacing, f"{source}[{i}]") for i, sample in enumerate(array)]
     if array.ndim == 2 and array.shape[0] == 1:

@@ -51,6 +51,7 @@ PROBE = 1 << 13  # bytes at either end of a file that say whether it is text
 END = 1 << 14  # characters at the end of a text, in which ...
 SAMPLE = 50  # ... so many lines of numbers tell how they are written
 PIECE = 1 << 16  # fields of a long line that are split off at a time
+POURED = 1 << 14  # numbers that are moved at a time
 
 _CHECK = "Check the file and its separators."
 _NUMERIC = re.compile(r"(?:[\d\s.,;+\-eEdD*'’]++|nan|bad|null|none|na|n/a)*+", re.IGNORECASE)
@@ -122,6 +123,7 @@ def read(path: Path, hints: Hints) -> list[guards.Surface]:
     sample = _last_numbers(content)
     dialect = _dialect(sample, hints.decimal, path.name)
     header_lines, table = _table(content, dialect, path.name)
+    del content
     table = guards.without_marks(table)
     all_titles = titles_of(header_lines, dialect.delimiter, table.shape[1])
     table, titles = columns_of_heights(table, all_titles)
@@ -312,9 +314,19 @@ class _Table:
     def finished(self) -> Array:
         """The numbers (rows, columns)."""
         require(self.columns, self.source, "no line of numbers", "heights as text", _CHECK)
-        table = np.frombuffer(self.values).reshape(-1, self.columns)
+        table = _poured(self.values).reshape(-1, self.columns)
         table = table[:, : max(self.columns - self.empty, 1)]
         return _with_gaps(table, self.blanks) if table.shape[1] == 1 and self.blanks else table
+
+
+def _poured(values: array[float]) -> Array:
+    """Numbers in an array of their own, moved piece by piece from the end: they are never held twice."""
+    poured = np.empty(len(values))
+    while values:
+        first = (len(values) - 1) // POURED * POURED
+        poured[first : len(values)] = values[first:]
+        del values[first:]
+    return poured
 
 
 def _with_gaps(table: Array, blanks: array[int]) -> Array:
@@ -329,7 +341,8 @@ def _with_gaps(table: Array, blanks: array[int]) -> Array:
 def _surfaces(table: Array, header: dict[str, float], hints: Hints, source: str) -> list[guards.Surface]:
     columns = table.shape[1]
     heading = 'Write it into the heading, as "x (mm)"'
-    heights = (table[:, -1] if columns in (2, 3) else table) * hints.heights_in(source, header.get("z"))
+    heights = table[:, -1].copy() if columns in (2, 3) else table
+    heights *= hints.heights_in(source, header.get("z"))
     spacing = hints.pixel or ((header["dx"], header["dy"]) if "dx" in header else None)
 
     def lateral(axis: str) -> float:
