@@ -1,32 +1,30 @@
 """Constants of a mechanism for the kernels, with contacts soft enough for the time step."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from asperity.arguments import Array
 from asperity.errors import InputError
-from asperity.kernels.pointforce import Prepared
 from asperity.kernels.stepping import Motion, System
-from asperity.laws.spec import Law, SteppedLaw
+from asperity.laws.spec import Law
 from asperity.rolling import resolution, steps
 from asperity.rolling.course import Course
 from asperity.rolling.ground import Ground
+from asperity.rolling.rest import set_down
 from asperity.structures.body import Body
 
-Start = Callable[[Ground, Sequence[Body], System, Sequence[Prepared | SteppedLaw]], tuple[Array, Motion]]
-"""What sets bodies down: `asperity.rolling.rest.start_still` or its like."""
 NONE = np.zeros(0)
 RUNAWAY = 1e4
 """Times the load, or the largest force that the law was made for, that no contact force reaches."""
 
 
 def softened(
-    start: Start, ground: Ground, system: System, course: Course, highest_frequency: float | None
+    ground: Ground, system: System, course: Course, highest_frequency: float | None
 ) -> tuple[System, Motion, float]:
     """Constants with contacts soft enough for the time step, a start, and a force beyond reach, N."""
     bodies = course.bodies
-    stiffness, motion = start(ground, bodies, system, course.at_start)
+    stiffness, motion = set_down(ground, bodies, system, course.at_start, entering=not course.settled)
     own = alternating(system)
     least, thrown = ground.alternating + own, ground.thrown + own
     direct = system.own + ground.shapes**2 @ system.coefficients[3, : len(ground.natural)]
@@ -48,7 +46,7 @@ def softened(
     softer = steps.softening(least, thrown, stiffest, impacts, damping, stiffness, system.time_step)
     if softer.any():
         system = system._replace(softening=softer)
-        _, motion = start(ground, bodies, system, course.at_start)
+        _, motion = set_down(ground, bodies, system, course.at_start, entering=not course.settled)
     return system, motion, RUNAWAY * max(*system.loads, *forces)
 
 

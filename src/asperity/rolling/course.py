@@ -41,6 +41,8 @@ class Course:
         s.
     total : int
         Steps.
+    settled : int
+        Steps of the run-in.
     whole : bool
         Whether laws are laid out on all the way at once, not piece by piece.
     """
@@ -48,6 +50,7 @@ class Course:
     mechanism: Mechanism
     time_step: float
     total: int
+    settled: int = 0
     whole: bool = False
 
     def __post_init__(self) -> None:

@@ -15,7 +15,7 @@ from asperity.rolling.course import Course, laid_out
 from asperity.rolling.ground import ground_of, warn_if_bent
 from asperity.rolling.ledger import Ledger, ledger_of
 from asperity.rolling.mechanism import Mechanism
-from asperity.rolling.rest import start_still
+from asperity.rolling.rest import set_down
 from asperity.rolling.soundness import warn_of_counts
 from asperity.rolling.stepper import Stepper
 from asperity.store import Checkpoint
@@ -50,7 +50,6 @@ class RolledMechanism:
 def carried(
     course: Course,
     loads: Array,
-    start: assembly.Start,
     *,
     sensors: Array,
     displacements: bool = False,
@@ -60,13 +59,12 @@ def carried(
 ) -> Stepper:
     """A mechanism that was set down, with contacts soft enough for the time step, and carried on to the end.
 
-    By scales of the contact forces (n,), N, what sets it down, and rows of sensors (k, s) over all modes,
-    whose displacements are recorded beside accelerations where they are asked for. What is doubted is warned
-    of.
+    By scales of the contact forces (n,), N, and rows of sensors (k, s) over all modes, whose displacements
+    are recorded beside accelerations where they are asked for. What is doubted is warned of.
     """
     ground = ground_of(course, sensors)
     system = assembly.system_of(ground, course.bodies, loads, course.time_step, course.mechanism.constant)
-    started = assembly.softened(start, ground, system, course, highest_frequency)
+    started = assembly.softened(ground, system, course, highest_frequency)
     stepper = Stepper(course, *started, ground.softest, displacements)
     try:
         stepper.run(progress, checkpoint)
@@ -86,9 +84,9 @@ def _warn_if_bent(mechanism: Mechanism, displaced: Array) -> None:
         warn_if_bent(structure, displaced[alone])
 
 
-def recorded(stepper: Stepper, settled: int) -> dict[str, Any]:
-    """Fields of a `RolledMechanism` that has run in over so many steps."""
-    kept = slice(settled, None)
+def recorded(stepper: Stepper) -> dict[str, Any]:
+    """Fields of a `RolledMechanism`."""
+    kept = slice(stepper.course.settled, None)
     records = {name: value[..., kept] for name, value in stepper.record._asdict().items()}
     cores = records.pop("core")
     unconverged = int(stepper.motion.counts[1])
@@ -119,7 +117,7 @@ def roll_mechanism(
     progress: Progress | None = None,
     checkpoint: Checkpoint | None = None,
 ) -> RolledMechanism:
-    """Carry a mechanism on in time, from rest under its constant forces.
+    """Carry a mechanism on in time, from rest under its constant forces on contacts that go on.
 
     As `asperity.rolling.roll.roll_bodies`, and by the same steps: structures and bodies are advanced exactly
     for contact forces that are linear over a step, and the forces at its end solve all laws at once.
@@ -152,18 +150,17 @@ def roll_mechanism(
     settled = round(settling / h)
     steps = round(positive("duration (s)", duration) / h)
     require(steps >= 1, "duration (s)", duration, f"at least one time step of {h:.6g} s")
-    course = Course(mechanism, h, settled + steps)
+    course = Course(mechanism, h, settled + steps, settled)
     stepper = carried(
         course,
         np.full(course.contacts, positive("load (N)", load)),
-        start_still,
         sensors=np.zeros((0, mechanism.first_modes[-1])) if sensors is None else np.asarray(sensors, float),
         displacements=True,
         highest_frequency=highest_frequency,
         progress=progress,
         checkpoint=checkpoint,
     )
-    return RolledMechanism(**recorded(stepper, settled))
+    return RolledMechanism(**recorded(stepper))
 
 
 def rest_of(mechanism: Mechanism, step: int, load: float) -> Array:
@@ -174,4 +171,4 @@ def rest_of(mechanism: Mechanism, step: int, load: float) -> Array:
     loads = np.full(course.contacts, load)
     system = assembly.system_of(ground, course.bodies, loads, 1.0, mechanism.constant)
     laws = [laid_out(contact, at) for contact in mechanism.contacts]
-    return start_still(ground, course.bodies, system, laws)[1].displacement[: mechanism.first_modes[-1]]
+    return set_down(ground, course.bodies, system, laws)[1].displacement[: mechanism.first_modes[-1]]

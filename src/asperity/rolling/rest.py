@@ -1,6 +1,7 @@
-"""Bodies set on what they roll over: at rest under their loads, and moving on as if they had long rolled."""
+"""Where every run begins: at rest under its loads, and moving on as if all had long rolled."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -53,16 +54,21 @@ def at_rest(
     halved until they go down. The forces are exact to `relative` of their scale (n,), N. A
     `ComputationError` says that nothing is at rest.
     """
+    moved, pressed = (np.zeros((len(displaced), 0)), np.zeros(0)) if free is None else free
+    matrix, shapes = _coordinates(bodies, compliance, moved)
+    forces = [-pressed, *(body.pressing for body in bodies), np.zeros(len(displaced))]
+    found = equilibrium(matrix, np.concatenate(forces), shapes, displaced, scale, laws, relative)
+    x, force, approach, stiffness = found
+    return x[: -len(displaced)], force, approach, stiffness
+
+
+def _coordinates(bodies: Sequence[Body], compliance: Array, moved: Array) -> tuple[Array, Array]:
+    """Stiffness of all coordinates x of `at_rest`, and displacements of the contacts by them."""
     square, vectors = np.linalg.eigh(compliance)
-    n = len(displaced)
-    moved, pressed = (np.zeros((n, 0)), np.zeros(0)) if free is None else free
-    f = len(pressed)
     contacts = block_diag(*(body.contacts for body in bodies))
-    shapes = np.hstack([moved, contacts, vectors * np.sqrt(square.clip(0.0))])
-    matrix = block_diag(np.zeros((f, f)), *(body.stiffness for body in bodies), np.eye(n))
-    pressing = np.concatenate([-pressed, *(body.pressing for body in bodies), np.zeros(n)])
-    x, force, approach, stiffness = equilibrium(matrix, pressing, shapes, displaced, scale, laws, relative)
-    return x[: f + contacts.shape[1]], force, approach, stiffness
+    free = np.zeros((moved.shape[1], moved.shape[1]))
+    matrix = block_diag(free, *(body.stiffness for body in bodies), np.eye(len(square)))
+    return matrix, np.hstack([moved, contacts, vectors * np.sqrt(square.clip(0.0))])
 
 
 def equilibrium(
@@ -147,19 +153,7 @@ def evaluations(prepared: Sequence[Prepared | SteppedLaw]) -> tuple[list[Evaluat
     return [partial(evaluated, law) for law in prepared], TOLERANCE if looked_up else STEPPED_TOLERANCE
 
 
-def start_still(
-    ground: Ground, bodies: Sequence[Body], system: System, prepared: Sequence[Prepared | SteppedLaw]
-) -> tuple[Array, Motion]:
-    """Stiffnesses of contacts at rest at the start of a run (n,), N/m, and a state without motion.
-
-    Modes that nothing holds are where constant forces and contacts hold each other; without constant forces
-    on any structure they stay where they are.
-    """
-    stiffness, motion, _ = _set_down(ground, bodies, system, prepared)
-    return stiffness, motion
-
-
-def start_rolling(
+def set_down(
     ground: Ground,
     bodies: Sequence[Body],
     system: System,
@@ -167,23 +161,44 @@ def start_rolling(
     *,
     entering: bool = False,
 ) -> tuple[Array, Motion]:
-    """As `start_still`, in motion: modes and contacts move as under constant loads that have long rolled.
+    """Stiffnesses of contacts at rest at the start of a run (n,), N/m, and the state from which it goes on.
 
-    Displacements of modes are the static ones: what is left to ring is less by (k v/ω)² than that of a mode
-    of wavenumber k. A force that is entering on a support has just come onto a structure at rest.
+    Everything rests on its contacts under the constant forces, and moves on as this rest does while contacts
+    go along what they roll over, and laws stay as they are: what is left to ring is less by (k v/ω)² than the
+    static answer of a mode ω along which a contact goes by k v. A force that is entering on a support has
+    just come onto a structure at rest. Modes that nothing holds are where constant forces and contacts hold
+    each other; without constant forces on any structure they stay where they are.
     """
-    stiffness, motion, rates = _set_down(ground, bodies, system, prepared)
+    rest = _at_rest(ground, bodies, system, prepared)
+    motion = rest.motion
+    moving = motion.force[0] * ~_on_support(ground) if entering else motion.force[0]
     s = len(ground.natural)
-    force = motion.force[0]
-    moving = force * ~_on_support(ground) if entering else force
-    motion.velocity[:s] = (moving @ ground.rates) * _softness(system)[:s]
-    rates = rates + ground.shapes @ motion.velocity[:s]
-    rates += ground.rates @ motion.displacement[:s]
-    d = system.core_shapes.shape[1]
+    pushed = np.zeros(len(system.stiffness))
+    pushed[:s] = moving @ ground.rates
+    softness = _softness(system)
+    matrix, shapes = _coordinates(bodies, rest.compliance, rest.shapes[:, rest.free])
+    moved = rest.rates + ground.rates @ motion.displacement[:s] + rest.shapes @ (softness * pushed)
+    pulled = np.zeros(len(matrix))
+    pulled[: int(rest.free.sum())] = pushed[rest.free]
+    firm = shapes.T * rest.stiffness
+    rates = _solved(matrix + firm @ shapes, pulled - firm @ moved)
+    closer = -(moved + shapes @ rates)
+    motion.velocity[:] = (pushed + (rest.stiffness * closer) @ rest.shapes) * softness
+    motion.approach[1] -= system.time_step * closer
+    _place(bodies, rest.free, rates, motion.velocity, motion.core[:, system.core_shapes.shape[1] :])
+    return rest.stiffness, motion
+
+
+def _place(
+    bodies: Sequence[Body], free: NDArray[np.bool_], values: Array, modes: Array, core: Array
+) -> None:
+    """Write values of the coordinates of `at_rest` to free ones of all modes (m,), and to bodies (b, d)."""
+    first = int(free.sum())
+    modes[free] = values[:first]
     for index, body in enumerate(bodies):
-        own = rates[system.body == index]
-        motion.core[index, d : d + len(body.mass)] = np.linalg.lstsq(body.contacts, -own, rcond=None)[0]
-    return stiffness, motion
+        count = len(body.mass)
+        core[index, :count] = values[first : first + count]
+        first += count
 
 
 def _softness(system: System) -> Array:
@@ -192,10 +207,21 @@ def _softness(system: System) -> Array:
     return np.divide(1.0, system.stiffness, out=np.zeros(len(held)), where=held)
 
 
-def _set_down(
+@dataclass(frozen=True, eq=False)
+class Rest:
+    """Everything at rest on n contacts, with m modes."""
+
+    motion: Motion
+    stiffness: Array  # (n,), of the contacts, N/m
+    shapes: Array  # (n, m), of all modes
+    free: NDArray[np.bool_]  # (m,), modes that contacts alone hold
+    compliance: Array  # (n, n), of what else yields, m/N
+    rates: Array  # (n,), how fast a rail moves under them, m/s
+
+
+def _at_rest(
     ground: Ground, bodies: Sequence[Body], system: System, prepared: Sequence[Prepared | SteppedLaw]
-) -> tuple[Array, Motion, Array]:
-    """Stiffnesses of contacts at rest, the state of rest, and how fast a rail moves under them (n,), m/s."""
+) -> Rest:
     n = len(system.loads)
     shapes = shapes_at_contacts(ground, system)
     softness = _softness(system)
@@ -221,15 +247,10 @@ def _set_down(
             break
     motion.push[:] = constant + force @ shapes
     motion.displacement[:] = motion.push * softness
-    first = int(free.sum())
-    motion.displacement[free] = coordinates[:first]
-    for index, body in enumerate(bodies):
-        count = len(body.mass)
-        motion.core[index, :count] = coordinates[first : first + count]
-        first += count
+    _place(bodies, free, coordinates, motion.displacement, motion.core)
     motion.force[:] = motion.trial[:] = motion.elastic[:] = force
     motion.approach[:] = approach
-    return stiffness, motion, rates
+    return Rest(motion, stiffness, shapes, free, compliance, rates)
 
 
 def _on_support(ground: Ground) -> NDArray[np.bool_]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 from typing import Self
 
 import numpy as np
@@ -18,7 +17,6 @@ from asperity.rolling.assembly import body_loads, offsets_of
 from asperity.rolling.course import Course
 from asperity.rolling.driver import RolledMechanism, carried, recorded
 from asperity.rolling.mechanism import Mechanism, RollingContact, Side
-from asperity.rolling.rest import start_rolling
 from asperity.rolling.soundness import STILL, free_motion, refuse_missed_load, steady, without_rounding
 from asperity.rolling.stepper import Stepper
 from asperity.rolling.trajectory import Path
@@ -147,11 +145,10 @@ def roll_bodies(
         for law, way in zip(laws, path.trajectories, strict=True)
     ]
     mechanism = Mechanism(structures, bodies, contacts)
-    course = Course(mechanism, time_step, path.total, whole=True)
+    course = Course(mechanism, time_step, path.total, path.settled, whole=True)
     stepper = carried(
         course,
         body_loads(bodies),
-        partial(start_rolling, entering=not path.settled),
         sensors=_rows_of(over, seen),
         highest_frequency=highest_frequency,
         progress=progress,
@@ -161,7 +158,7 @@ def roll_bodies(
     _refuse_missed_loads(stepper, path, touching)
     kept = slice(path.settled, None)
     return RolledBodies(
-        **recorded(stepper, path.settled),
+        **recorded(stepper),
         positions=path.positions[:, kept],
         history_start=path.starts,
         in_contact=touching[:, kept],

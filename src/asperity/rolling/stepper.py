@@ -55,8 +55,9 @@ class Stepper:
         self.shapes, self.rates = np.zeros((2, self.length + 1, n, modes))
         self.laid: Any = everywhere
         self.motion.counts[0] = -1
+        closer = self.motion.approach[0] - self.motion.approach[1]
         self._advance(0, np.inf)
-        self.motion.approach[1] = self.motion.approach[0]
+        self.motion.approach[1] = self.motion.approach[0] - closer
         self.energies_at_start = self.energies()
         self.started = self.motion.core[:, states // 2 :].copy()  # rates of the bodies
 
