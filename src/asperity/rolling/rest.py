@@ -189,9 +189,7 @@ def set_down(
     return rest.stiffness, motion
 
 
-def _place(
-    bodies: Sequence[Body], free: NDArray[np.bool_], values: Array, modes: Array, core: Array
-) -> None:
+def _place(bodies: Sequence[Body], free: NDArray[np.bool_], values: Array, modes: Array, core: Array) -> None:
     """Write values of the coordinates of `at_rest` to free ones of all modes (m,), and to bodies (b, d)."""
     first = int(free.sum())
     modes[free] = values[:first]
