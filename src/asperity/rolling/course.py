@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from types import SimpleNamespace
@@ -21,17 +21,14 @@ from asperity.structures.rail_poles import RailBetween
 
 ALONG = ("planes", "values", "slopes", "touches")
 """What a `Prepared` law has at every step."""
-FIXED = tuple(name for name in Prepared._fields if name not in ALONG)
-"""What it has once."""
-CHECKED = 2**14
-"""Steps at once of which is asked whether the laws went beyond what they were made for."""
 
 
 @dataclass(eq=False)
 class Course:
     """A mechanism at the time steps of a run, counted from where the run-in begins.
 
-    Laws that are solved in every step remember where they were: then all are laid out on all the way.
+    Laws are laid out piece by piece; those that are solved in every step remember where they were, so that
+    all of their way is one piece.
 
     Parameters
     ----------
@@ -43,35 +40,30 @@ class Course:
         Steps.
     settled : int
         Steps of the run-in.
-    whole : bool
-        Whether laws are laid out on all the way at once, not piece by piece.
     """
 
     mechanism: Mechanism
     time_step: float
     total: int
     settled: int = 0
-    whole: bool = False
 
     def __post_init__(self) -> None:
         self.bodies = self.mechanism.still()
         self.laws = [contact.law for contact in self.mechanism.contacts]
         self.contacts = len(self.laws)
-        # approach of each contact that is within its data at all steps laid out; and where these begin
-        self.within = np.full(self.contacts, np.inf)
-        self.begun = self.total
 
     @cached_property
-    def everywhere(self) -> list[Any]:
-        """Laws that are laid out on all the way; none where they are laid out piece by piece."""
-        contacts = self.mechanism.contacts
-        whole = self.whole or not all(isinstance(laid_out(each, range(1)), Prepared) for each in contacts)
-        return [laid_out(contact, range(self.total + 1)) for contact in contacts] if whole else []
+    def stepped(self) -> dict[int, SteppedLaw]:
+        """Laws that are solved in every step, by their contacts; all are asked whether the way is theirs."""
+        ends = range(0, self.total + 1, max(self.total, 1))
+        contacts = enumerate(self.mechanism.contacts)
+        other = [each for each in contacts if not isinstance(laid_out(each[1], ends), Prepared)]
+        return {k: laid_out(contact, range(self.total + 1)) for k, contact in other}
 
     @cached_property
     def at_start(self) -> list[Any]:
         """Laws whose first step is the first of all."""
-        return self.everywhere or self.pieces(range(1))
+        return self.pieces(range(1))
 
     def place(self, contact: int, step: int) -> float:
         """Position of a contact at a step, m."""
@@ -102,40 +94,11 @@ class Course:
                 written.add(side.structure)
 
     def pieces(self, steps: range) -> list[Any]:
-        """Laws of all contacts at some steps."""
-        if self.everywhere:
-            return [self.piece(k, steps) for k in range(self.contacts)]
-        return laid_together(self.mechanism.contacts, steps)
-
-    def piece(self, k: int, steps: range) -> Any:
-        """That of one contact."""
-        if not self.everywhere:
-            return laid_out(self.mechanism.contacts[k], steps)
-        return _at_rows(self.everywhere[k], steps)
-
-    def laid(self, steps: range) -> Any:
-        """Laws at some steps, as `asperity.kernels.stepping.solve_prepared` takes them."""
-        pieces = self.pieces(steps)
-        self.within = np.minimum(self.within, list(map(_within, pieces)))
-        self.begun = min(self.begun, steps.start)
-        fixed, sizes = self._fixed if self.everywhere else _fixed_of(pieces)
-        return Prepared(**fixed, **_stacked(pieces, ALONG)), sizes
-
-    @cached_property
-    def _fixed(self) -> tuple[dict[str, Any], NDArray[np.int64]]:
-        return _fixed_of(self.everywhere)
-
-    def beyond(self, approach: Array) -> list[int]:
-        """Steps at which each law was beyond its data, of approaches that it saw at all steps (n, t), m."""
-        # a run that was taken up has not laid out all
-        doubted = (approach.max(axis=1) > self.within) | (self.begun > 0)
-        counts = [0] * self.contacts
-        for k in np.flatnonzero(doubted & [isinstance(law, Prepared) for law in self.at_start]).tolist():
-            for first in range(0, self.total + 1, CHECKED):
-                steps = range(first, min(first + CHECKED, self.total + 1))
-                seen = np.ascontiguousarray(at_steps(approach[k], steps))
-                counts[k] += int(evaluate_all(self.piece(k, steps), seen, 0)[2])
-        return counts
+        """Laws of all contacts at some steps, those that are solved in every step at all."""
+        if not self.stepped:
+            return laid_together(self.mechanism.contacts, steps)
+        contacts = enumerate(self.mechanism.contacts)
+        return [self.stepped[k] if k in self.stepped else laid_out(each, steps) for k, each in contacts]
 
 
 def _seen_along(structure: Modal, trajectory: Trajectory, steps: range) -> tuple[Array, Array, Array | float]:
@@ -194,18 +157,34 @@ def _raised(law: SteppedLaw, heights: Array) -> SimpleNamespace:
     return SimpleNamespace(evaluate=evaluate, **other, **({"settle": settle} if settles(law) else {}))
 
 
-def _within(law: Prepared) -> float:
-    """Approach up to which a law is within its data wherever it is laid out, m."""
+def in_contact(law: Prepared | SteppedLaw, first: int, force: Array, approach: Array) -> NDArray[np.bool_]:
+    """Whether surfaces touch from a step of a piece on, by force, N, and approach as the law sees it, m (n,).
+
+    Always where the contact can pull.
+    """
+    if isinstance(law, Prepared):
+        if law.bilateral:
+            return np.ones(force.shape, dtype=bool)
+        if law.damped_in_flight:
+            force = evaluate_all(law, approach, first)[0]
+    return np.asarray(force > 0.0)
+
+
+def beyond(law: Prepared, first: int, approach: Array) -> int:
+    """Number of steps from one of a piece on at which its law is beyond its data, at approaches (n,), m."""
     lowest = float(law.values.min()) if law.form == SHIFTED else 0.0
-    return float(law.planes.min()) + law.upper + lowest
+    if approach.max() <= float(law.planes.min()) + law.upper + lowest:  # as hardly ever not
+        return 0
+    return int(evaluate_all(law, approach, first)[2])
 
 
-def _stacked(prepared: Sequence[Any], names: Iterable[str]) -> dict[str, Any]:
-    """Fields of `Prepared` laws of n contacts by their names, (n, ...), padded to the largest."""
-    return {name: padded([np.asarray(getattr(law, name)) for law in prepared]) for name in names}
+def stacked(pieces: Sequence[Any]) -> tuple[Prepared, NDArray[np.int64]]:
+    """Laws of n contacts as `asperity.kernels.stepping.solve_prepared` takes them, padded to the largest.
 
-
-def _fixed_of(prepared: Sequence[Any]) -> tuple[dict[str, Any], NDArray[np.int64]]:
-    """What no step changes, and numbers of states and of knots (2, n)."""
-    sizes = [[len(getattr(law, name)) for law in prepared] for name in ("states", "knots")]
-    return _stacked(prepared, FIXED), np.array(sizes)
+    And numbers of states and of knots (2, n).
+    """
+    sizes = [[len(getattr(law, name)) for law in pieces] for name in ("states", "knots")]
+    arrays: dict[str, Any] = {
+        name: padded([np.asarray(getattr(law, name)) for law in pieces]) for name in Prepared._fields
+    }
+    return Prepared(**arrays), np.array(sizes)

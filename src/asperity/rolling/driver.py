@@ -73,7 +73,7 @@ def carried(
     for law in stepper.stepped.values():
         law.warn_of_flaws()
     names = [law.name for law in course.laws]
-    warn_of_counts(names, stepper.motion.counts, course.beyond(stepper.seen), course.total + 1)
+    warn_of_counts(names, stepper.motion.counts, stepper.beyond.tolist(), course.total + 1)
     return stepper
 
 

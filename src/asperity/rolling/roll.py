@@ -10,8 +10,7 @@ import numpy as np
 
 from asperity.arguments import Array, ArrayLike, NDArray, as_row
 from asperity.errors import InputError
-from asperity.kernels import pointforce
-from asperity.laws.spec import Law, SteppedLaw
+from asperity.laws.spec import Law
 from asperity.progress import Progress
 from asperity.rolling.assembly import body_loads, offsets_of
 from asperity.rolling.course import Course
@@ -145,7 +144,7 @@ def roll_bodies(
         for law, way in zip(laws, path.trajectories, strict=True)
     ]
     mechanism = Mechanism(structures, bodies, contacts)
-    course = Course(mechanism, time_step, path.total, path.settled, whole=True)
+    course = Course(mechanism, time_step, path.total, path.settled)
     stepper = carried(
         course,
         body_loads(bodies),
@@ -154,15 +153,14 @@ def roll_bodies(
         progress=progress,
         checkpoint=checkpoint,
     )
-    touching = np.array(list(map(in_contact, course.everywhere, stepper.record.contact_force, stepper.seen)))
-    _refuse_missed_loads(stepper, path, touching)
+    _refuse_missed_loads(stepper, path)
     kept = slice(path.settled, None)
     return RolledBodies(
         **recorded(stepper),
         positions=path.positions[:, kept],
         history_start=path.starts,
-        in_contact=touching[:, kept],
-        visited=np.array(list(map(_visited, course.everywhere, stepper.seen))),
+        in_contact=stepper.touching[:, kept],
+        visited=stepper.visited,
     )
 
 
@@ -178,20 +176,12 @@ def _rows_of(over: Modal | RailBetween | None, sensors: Array) -> Array:
     return np.zeros((0, 0))
 
 
-def _visited(prepared: pointforce.Prepared | SteppedLaw, approach: Array) -> tuple[float, float]:
-    """Least and largest approach from the plane of a law, m; all there are, of one that Python steps."""
-    if not isinstance(prepared, pointforce.Prepared):
-        return -np.inf, np.inf
-    from_plane = approach - prepared.planes
-    return float(from_plane.min()), float(from_plane.max())
-
-
-def _refuse_missed_loads(stepper: Stepper, path: Path, touching: NDArray[np.bool_]) -> None:
-    """Hold each body that nothing but its contacts holds to its load; `touching` (n, m) at every step."""
+def _refuse_missed_loads(stepper: Stepper, path: Path) -> None:
+    """Hold each body that nothing but its contacts holds to its load."""
     record = stepper.record
     of = stepper.system.body
     touched = []  # how far texture and contact displace bodies while they touch, m
-    for approach, on in zip(record.relative_displacement, touching, strict=True):
+    for approach, on in zip(record.relative_displacement, stepper.touching, strict=True):
         touched.append(float(np.ptp(approach[on])) if on.any() else 0.0)
     sunk = stepper.softest * sum(float(np.abs(body.static_loads).sum()) for body in stepper.course.bodies)
     for k, body in enumerate(stepper.course.bodies):
@@ -202,21 +192,6 @@ def _refuse_missed_loads(stepper: Stepper, path: Path, touching: NDArray[np.bool
             reach = sunk + max(np.compress(own, touched))
             force = shape @ record.contact_force[own]
             refuse_missed_load(name, force, load, mass, reach, path.time_step, path.settled)
-
-
-def in_contact(
-    prepared: pointforce.Prepared | SteppedLaw, force: Array, approach: Array
-) -> NDArray[np.bool_]:
-    """Whether the surfaces touch at each step, by force, N, and approach, m, (n,) each.
-
-    Always where the contact can pull.
-    """
-    if isinstance(prepared, pointforce.Prepared):
-        if prepared.bilateral:
-            return np.ones(force.shape, dtype=bool)
-        if prepared.damped_in_flight:
-            force = pointforce.evaluate_all(prepared, approach, 0)[0]
-    return np.asarray(force > 0.0)
 
 
 def _varies(record: Array) -> bool:

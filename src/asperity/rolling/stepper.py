@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from asperity.arguments import Array, NDArray
+from asperity.arguments import NDArray
 from asperity.errors import ComputationError, InputError
 from asperity.kernels import stepping
 from asperity.kernels.pointforce import Prepared, evaluate
 from asperity.laws.spec import SettlingLaw, SteppedLaw, settles
 from asperity.progress import Progress
-from asperity.rolling.course import Course
+from asperity.rolling.course import Course, beyond, in_contact, stacked
 from asperity.store import Checkpoint
 from asperity.written_numbers import rounded
 
@@ -47,13 +47,20 @@ class Stepper:
         acceleration = np.zeros((sensors, steps))
         moved = np.zeros((sensors if self.displacements else 0, steps))
         self.record = stepping.Histories(force, approach, over, rolling, core, acceleration, moved)
-        everywhere = self.course.everywhere
-        self.stepped = {k: law for k, law in enumerate(everywhere) if not isinstance(law, Prepared)}
+        self.stepped = self.course.stepped
+        # what laws say of the steps done: whether surfaces touch; least and largest approach from the plane
+        # of each law, m, known of those that are looked up; and steps at which it was beyond its data
+        self.touching = np.zeros((n, steps), dtype=bool)
+        self.visited = np.array(
+            [(-np.inf, np.inf) if k in self.stepped else (np.inf, -np.inf) for k in range(n)]
+        )
+        self.beyond = np.zeros(n, dtype=np.int64)
         self.length = int(np.clip(SHAPES_AT_ONCE // max(n * modes, 1), LEAST, LONGEST))
         self.offset = self.end = -1
         # one place for all chunks: fresh memory takes longer than what is computed
         self.shapes, self.rates = np.zeros((2, self.length + 1, n, modes))
-        self.laid: Any = everywhere
+        self.pieces: list[Any] = []
+        self.laid: Any = None
         self.motion.counts[0] = -1
         closer = self.motion.approach[0] - self.motion.approach[1]
         self._advance(0, np.inf)
@@ -77,12 +84,6 @@ class Stepper:
             pressed += float(body.pressing @ y)
         pressed -= float(system.constant @ motion.displacement) if len(system.constant) else 0.0
         return float(modes[:structure].sum()), stored, pressed
-
-    @property
-    def seen(self) -> Array:
-        """Approaches that the laws saw at all steps (n, t), m: without what softened contacts took."""
-        record = self.record
-        return record.relative_displacement - self.system.softening[:, None] * record.contact_force
 
     def run(self, progress: Progress | None, checkpoint: Checkpoint | None) -> None:
         """Go on to the end of the path, from where a checkpoint was left, if it was."""
@@ -115,14 +116,37 @@ class Stepper:
         stop = min(stop, self.end)
         state, along = (self.system, self.motion, self.record), (self.shapes, self.rates, self.offset)
         if not self.stepped:
-            return bool(stepping.roll_prepared(*state, self.laid, *along, stop, largest))
-        for step in range(done + 1, stop + 1):
-            loops = stepping.solve_contacts.py_func, self._solve
-            if not stepping.roll.py_func(*loops, *state, self.laid, *along, step, largest):
+            sound = bool(stepping.roll_prepared(*state, self.laid, *along, stop, largest))
+        else:
+            sound = self._advance_stepped(state, along, range(done + 1, stop + 1), largest)
+        if sound:
+            self._look(done + 1, stop + 1)
+        return sound
+
+    def _advance_stepped(
+        self, state: tuple[Any, ...], along: tuple[Any, ...], steps: range, largest: float
+    ) -> bool:
+        loops = stepping.solve_contacts.py_func, self._solve
+        for step in steps:
+            if not stepping.roll.py_func(*loops, *state, self.pieces, *along, step, largest):
                 return False
             for law in self.stepped.values() if step else ():
                 law.accept(step)
         return True
+
+    def _look(self, first: int, stop: int) -> None:
+        """Note what laws say of steps that were done: without what softened contacts took of approaches."""
+        done = slice(first, stop)
+        row = first - self.offset
+        force = self.record.contact_force[:, done]
+        seen = self.record.relative_displacement[:, done] - self.system.softening[:, None] * force
+        for k, law in enumerate(self.pieces):
+            self.touching[k, done] = in_contact(law, row, force[k], seen[k])
+            if isinstance(law, Prepared):
+                from_plane = seen[k] - law.planes[row : row + stop - first]
+                self.visited[k, 0] = min(self.visited[k, 0], from_plane.min())
+                self.visited[k, 1] = max(self.visited[k, 1], from_plane.max())
+                self.beyond[k] += beyond(law, row, seen[k])
 
     def _hold(self, step: int) -> None:
         """Make ready the chunk of a step, whose bounds do not depend on where a run was taken up."""
@@ -134,21 +158,22 @@ class Stepper:
         count = len(steps)
         if self.shapes.shape[2]:
             self.course.write_shapes(steps, self.shapes[:count], self.rates[:count])
+        self.pieces = self.course.pieces(steps)
         if not self.stepped:  # one kernel serves any number and mix
-            self.laid = self.course.laid(steps)
+            self.laid = stacked(self.pieces)
 
     def _solve(self, laws: Any, k: int, row: int, free: Free, load: float, guess: float) -> Found:
         """As `asperity.kernels.stepping.solve_prepared`, by any law.
 
         One that settles with the bodies does without iteration, but where its damper engages or lets go.
         """
-        step = self.offset + row
         law = laws[k]
         damping = float(self.course.laws[k].damping)
         solve = stepping.solve_law.py_func
         if isinstance(law, Prepared):
             in_flight = law.damped_in_flight
-            return solve(evaluate, law, step, free, load, guess, damping, in_flight, stepping.FORCE_TOLERANCE)
+            return solve(evaluate, law, row, free, load, guess, damping, in_flight, stepping.FORCE_TOLERANCE)
+        step = self.offset + row
         if settles(law) and (settled := _settled(law, step, free, damping)) is not None:
             return *settled, 1, stepping.FOUND
         return solve(_evaluate, law, step, free, load, guess, damping, False, STEPPED_TOLERANCE)
@@ -168,6 +193,7 @@ class Stepper:
     def _state(self) -> dict[str, NDArray[Any]]:
         """What bodies and laws need to go on from here."""
         state = {f"motion.{name}": value.copy() for name, value in self.motion._asdict().items()}
+        state |= {"seen.visited": self.visited.copy(), "seen.beyond": self.beyond.copy()}
         for k, law in self.stepped.items():
             state |= {f"law.{k}.{name}": value for name, value in law.state().items()}
         return state
@@ -175,7 +201,11 @@ class Stepper:
     def _histories(self, state: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
         """Records up to a state."""
         done = int(state["motion.counts"][0]) + 1
-        return {f"record.{name}": value[..., :done].copy() for name, value in self.record._asdict().items()}
+        return {name: value[..., :done].copy() for name, value in self._records().items()}
+
+    def _records(self) -> dict[str, NDArray[Any]]:
+        records = self.record._asdict() | {"touching": self.touching}
+        return {f"record.{name}": value for name, value in records.items()}
 
     def _restore(self, checkpoint: Checkpoint) -> None:
         """Take the run up where it was saved, if it was: state, histories, and what laws remember."""
@@ -183,7 +213,7 @@ class Stepper:
         if arrays is None:
             return
         ours = {f"motion.{name}": value for name, value in self.motion._asdict().items()}
-        ours |= {f"record.{name}": value for name, value in self.record._asdict().items()}
+        ours |= {"seen.visited": self.visited, "seen.beyond": self.beyond} | self._records()
         for name, value in ours.items():
             kept = arrays.get(name, np.zeros(0))
             last = kept.shape[-1] if name.startswith("record.") else value.shape[-1]
