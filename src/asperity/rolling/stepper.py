@@ -23,7 +23,7 @@ SAVE_EVERY = 10.0  # s
 STEPPED_TOLERANCE = 1e-6  # of the force plus the load; a law stepped from Python iterates itself
 SHAPES_AT_ONCE = 2**18
 """Mode shapes that are held at once, of all contacts: they stay in the processor's cache."""
-LONGEST, LEAST = 2048, 64
+LONGEST, LEAST = 4096, 64
 """Steps whose mode shapes are held at once, at most and at least."""
 
 
