@@ -10,7 +10,7 @@ from asperity.errors import ExtrapolationWarning, LargeDeflectionWarning
 from asperity.laws import HertzLaw, Linear, Printed
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.texture import StateTexture
-from asperity.rolling.course import beyond, laid_out, laid_together
+from asperity.rolling.course import laid_out, laid_together, steps_beyond
 from asperity.rolling.driver import roll_mechanism
 from asperity.rolling.mechanism import Mechanism, RollingContact, Side
 from asperity.rolling.roll import roll_bodies
@@ -190,8 +190,8 @@ def test_the_thesis_law_is_beyond_its_data_by_its_approach_whatever_the_texture(
     raised = Printed(ForceCurve.hertz(2e10), StateTexture.unfiltered(np.full(400, 1e-6), 1e-4, -0.01), 1e-6)
 
     law = raised.prepare(np.arange(5) * 1e-5)._replace(upper=4e-7)
-    assert beyond(law, 1, np.array([3e-7, 5e-7, 5e-7, 9e-7])) == 3
-    assert beyond(law, 1, np.full(4, 3e-7)) == 0
+    assert steps_beyond(law, 1, np.array([3e-7, 5e-7, 5e-7, 9e-7])) == 3
+    assert steps_beyond(law, 1, np.full(4, 3e-7)) == 0
 
 
 def test_laws_that_are_solved_in_every_step_go_beside_others():

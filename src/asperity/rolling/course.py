@@ -170,7 +170,7 @@ def in_contact(law: Prepared | SteppedLaw, first: int, force: Array, approach: A
     return np.asarray(force > 0.0)
 
 
-def beyond(law: Prepared, first: int, approach: Array) -> int:
+def steps_beyond(law: Prepared, first: int, approach: Array) -> int:
     """Number of steps from one of a piece on at which its law is beyond its data, at approaches (n,), m."""
     lowest = float(law.values.min()) if law.form == SHIFTED else 0.0
     if approach.max() <= float(law.planes.min()) + law.upper + lowest:  # as hardly ever not

@@ -12,7 +12,7 @@ from asperity.kernels import stepping
 from asperity.kernels.pointforce import Prepared, evaluate
 from asperity.laws.spec import SettlingLaw, SteppedLaw, settles
 from asperity.progress import Progress
-from asperity.rolling.course import Course, beyond, in_contact, stacked
+from asperity.rolling.course import Course, in_contact, stacked, steps_beyond
 from asperity.store import Checkpoint
 from asperity.written_numbers import rounded
 
@@ -146,7 +146,7 @@ class Stepper:
                 from_plane = seen[k] - law.planes[row : row + stop - first]
                 self.visited[k, 0] = min(self.visited[k, 0], from_plane.min())
                 self.visited[k, 1] = max(self.visited[k, 1], from_plane.max())
-                self.beyond[k] += beyond(law, row, seen[k])
+                self.beyond[k] += steps_beyond(law, row, seen[k])
 
     def _hold(self, step: int) -> None:
         """Make ready the chunk of a step, whose bounds do not depend on where a run was taken up."""
