@@ -2,8 +2,9 @@
 """Time a step of a ball bearing: against a single contact, and a second of it with texture on all parts.
 
 A 6205 under 100 N at 1800 1/min, nine balls, 18 contacts; waviness and roughness on both raceways and on
-every ball. First the time of a step and contact, next to that of one ball on one contact by the same law
-(`roll_bodies`, a ball on a short beam), in turn in the same run, CPU time of one thread. Then one
+every ball. First the time of a step and contact, next to that with a film of ISO VG 68 in each contact and
+to that of one ball on one contact by the same law (`roll_bodies`, a ball on a short beam), in turn in the
+same run, CPU time of one thread. Then one
 second, whole calls, wall and CPU time: scans, made once and kept (`--cache`), the textures of the balls, and
 the rolling after them.
 
@@ -27,7 +28,9 @@ import numpy as np
 from step_clock import Clock
 
 from asperity import BallBearing
+from asperity.case.ball_bearing import BearingUnderLoad
 from asperity.laws import Law
+from asperity.laws.film import WithFilm
 from asperity.reference.materials import material
 from asperity.rolling.bearing import BearingRings, RolledBearing, roll_bearing
 from asperity.rolling.roll import roll_bodies
@@ -40,6 +43,7 @@ from asperity.surfaces.raceway import AroundTexture
 
 BEARING, RADIAL, SPEED, STEP = BallBearing.named("6205"), 100.0, 30.0, 3.5e-6
 RINGS = BearingRings(Ring.rigid(0.5), Ring.rigid(0.3, radial_stiffness=1e8, damping_ratio=0.03))
+OILED = BearingUnderLoad(bearing={"name": "6205"}, radial=RADIAL, speed=SPEED, lubricant={"oil": "ISO VG 68"})
 GROUND = AroundTexture(waviness=0.2e-6, roughness=20e-9, longest=0.5e-3, shortest=50e-6)
 LAPPED = AroundTexture(waviness=0.02e-6, last_order=30, roughness=8e-9, longest=0.5e-3, shortest=50e-6)
 LIMITS = {"table": 20.0, "areal": 5.0}
@@ -107,17 +111,26 @@ def main() -> None:
     warnings.simplefilter("ignore")
     print("| prepared | wall, s | CPU, s |\n|---|---:|---:|")
     laws, heights = prepared(Store(chosen.cache))
-    print("\n| law | µs a step and contact | single contact | ratio |\n|---|---:|---:|---:|")
+    print("\n| law | µs a step and contact | with oil | ratio | single contact | ratio |")
+    print("|---|---:|---:|---:|---:|---:|")
     for name, both in laws.items():
+        wet = [
+            WithFilm(law, film, load)
+            for law, film, (_, load) in zip(both, OILED.films or (), OILED.contacts, strict=True)
+        ]
         rounds = []
         for _ in range(chosen.rounds + 1):
-            clocks = Clock(), Clock()
+            clocks = Clock(), Clock(), Clock()
             bearing(both, heights, 0.1, clocks[0])
-            single(both[1], 0.1, clocks[1])
-            rounds.append([clocks[0].seconds_per_step / 18, clocks[1].seconds_per_step])
+            bearing(wet, heights, 0.1, clocks[1])
+            single(both[1], 0.1, clocks[2])
+            rounds.append(
+                [each.seconds_per_step / count for each, count in zip(clocks, (18, 18, 1), strict=True)]
+            )
         found = 1e6 * np.array(rounds[1:])
-        ratio = np.median(found[:, 0] / found[:, 1])
-        print(f"| `{name}` | {found[:, 0].min():.2f} | {found[:, 1].min():.2f} | {ratio:.2f} |")
+        dry, oiled, alone = found.min(axis=0)
+        oil, many = np.median(found[:, [1, 0]] / found[:, [0, 2]], axis=0)
+        print(f"| `{name}` | {dry:.2f} | {oiled:.2f} | {oil:.2f} | {alone:.2f} | {many:.2f} |")
     print("\n| one second, law | wall, s | CPU, s | limit, s | energy left over |\n|---|---:|---:|---:|---:|")
     for name, both in laws.items():
         run, wall, cpu = timed(lambda both=both: bearing(both, heights, chosen.duration, Clock()))

@@ -9,6 +9,7 @@ from asperity import Crowning, SlicedContact
 from asperity.contact.film import Film, LineFilm
 from asperity.contact.hertz import in_groove
 from asperity.errors import InputError
+from asperity.kernels.pointforce import evaluate_all
 from asperity.laws.film import LIGHTEST, WithFilm
 from asperity.laws.hertz import HertzLaw
 from asperity.laws.layout import force
@@ -18,6 +19,8 @@ from asperity.laws.shifted import Shifted
 from asperity.laws.table import Table
 from asperity.reduction.stiffness import ForceCurve, ForceTable
 from asperity.reduction.texture import StateTexture
+from asperity.structures.body import Body
+from one_contact import roll_ball
 
 CONTACT = in_groove(115e9, 3.97e-3, 4.13e-3, 15.55e-3)
 FILM = Film(CONTACT, 1.77, 17.3e-3, 18.5e-9)
@@ -36,7 +39,7 @@ def looked_up(approaches, heights=0.0):
 
 
 def test_bodies_and_film_are_in_series():
-    """δ(F) = δ_H(F) − h(F), of a curve to rounding; there is a force before smooth bodies would touch."""
+    """δ(F) = δ_H(F) − h(F); there is a force before smooth bodies would touch."""
     found = force(WithFilm(HertzLaw(K), FILM, LOAD), np.zeros(30), NEARER)
     np.testing.assert_allclose(found, FORCES, rtol=1e-6)
     assert NEARER[0] < 0.0
@@ -44,13 +47,15 @@ def test_bodies_and_film_are_in_series():
     assert force(WithFilm(HertzLaw(K), FILM, LOAD), [0.0], [-1.2 * thickest]) == 0.0
 
 
-def test_a_table_has_the_film_of_a_curve():
-    """Of the same smooth contact, by a few states as scans have them."""
+@pytest.mark.parametrize("height", [0.0, 1e-7])
+def test_a_table_has_the_film_of_a_curve(height):
+    """Of the same smooth contact, by a few states as scans have them, from its first touch on."""
     states = CONTACT.approach(LOAD) * np.array([0.2, 0.5, 1.0, 1.7, 2.6, 4.2])
-    found = force(WithFilm(looked_up(states), FILM, LOAD), np.full(30, 3e-4), NEARER)
-    np.testing.assert_allclose(found, FORCES, rtol=0.03)
-    raised = force(WithFilm(looked_up(states, 1e-7), FILM, LOAD), np.full(30, 3e-4), NEARER - 1e-7)
-    np.testing.assert_allclose(raised[8:], FORCES[8:], rtol=0.03)
+    law = WithFilm(looked_up(states, height), FILM, LOAD)
+    np.testing.assert_allclose(force(law, np.full(30, 3e-4), NEARER - height), FORCES, rtol=1e-9)
+    touch = -height - FILM.central(LIGHTEST * LOAD)
+    below, above = force(law, np.full(2, 3e-4), touch + np.array([-1e-12, 1e-12]))
+    assert below == 0.0 < above
 
 
 def test_a_texture_is_followed_as_by_the_dry_law_and_its_states_move_with_the_film():
@@ -93,6 +98,62 @@ def test_the_curve_with_a_film_is_found_once_for_all_pieces_of_a_path(monkeypatc
         )
 
 
+ROUGH = looked_up(CONTACT.approach(LOAD) * np.array([0.1, 0.4, 1.0, 2.0]), 5e-8)
+TEXTURED = StateTexture(np.array([[0.0] * 64, [2e-8] * 64]), np.array([1e-6, 3e-6]), 0.0, 1e-5)
+
+
+@pytest.mark.parametrize(
+    "dry",
+    [
+        replace(
+            ROUGH, table=replace(ROUGH.table, forces=ROUGH.table.forces * np.linspace(0.5, 1.0, 4)[:, None])
+        ),
+        Printed(ForceCurve.hertz(K), TEXTURED, datum=1e-6),
+    ],
+    ids=lambda law: law.name,
+)
+def test_tables_and_secants_have_the_forces_of_their_bodies_nearer_by_the_film(dry):
+    """F(δ − h(F)) is that of the dry law at δ, whatever its states; its slope is the inverse of the sum."""
+    bodies = np.linspace(0.2e-6, 9e-6, 40)
+    pressed, stiffness, beyond = evaluate_all(dry.prepare(np.full(40, 2e-4)), bodies, 0)
+    film = np.array([FILM.central(each) for each in pressed])
+    wet = WithFilm(dry, FILM, LOAD).prepare(np.full(40, 2e-4))
+    found, slopes, beyond_with_film = evaluate_all(wet, bodies - film, 0)
+    np.testing.assert_allclose(found, pressed, rtol=1e-9)
+    np.testing.assert_allclose(1.0 / slopes, 1.0 / stiffness + 0.067 * film / pressed, rtol=1e-9)
+    assert beyond == beyond_with_film
+
+
+def test_a_law_that_is_solved_in_every_step_has_no_film():
+    class Solved:
+        name = "solved"
+
+        def prepare(self, positions):
+            return object()
+
+    with pytest.raises(
+        InputError, match="law of a contact with a film: received solved; allowed: one that is"
+    ):
+        WithFilm(Solved(), FILM, LOAD).prepare(SHORT)
+
+
+@pytest.mark.parametrize("damping", [0.0, 200.0])
+def test_in_motion_every_step_meets_bodies_and_film(damping):
+    """A ball that bounces over waves: its force is that of the approach, found apart, and of the damper."""
+    waves = 1e-6 * np.cos(2.0 * np.pi * np.arange(4000) / 25.0)
+    states = CONTACT.approach(LOAD) * np.array([0.2, 0.5, 1.0, 1.7, 2.6, 4.2, 8.0])
+    pressed = K * np.maximum(np.subtract.outer(states, waves), 0.0) ** 1.5
+    law = WithFilm(Table(ForceTable(pressed, states, 0.0, 1e-5, waves), damping), FILM, LOAD)
+    run = roll_ball(None, Body.rigid(0.05, LOAD), law, speed=1.0, start=1e-3, duration=0.03, time_step=1e-6)
+    elastic = force(law, run.position, run.relative_displacement)
+    assert run.contact_loss_share > 0.02
+    assert run.unconverged_steps == 0
+    ahead, now, before = (run.relative_displacement[2 - i : 30_001 - i] for i in range(3))
+    damped = elastic[2:] + damping * (1.5 * ahead - 2.0 * now + 0.5 * before) / 1e-6
+    expected = np.where(elastic[2:] > 0.0, np.maximum(damped, 0.0), 0.0)
+    np.testing.assert_allclose(run.contact_force[2:], expected, rtol=1e-6, atol=1e-6 * LOAD)
+
+
 def test_a_linear_law_is_softer_and_nearer_by_the_film():
     """Through (s0 − h, P) with the stiffness of bodies and film in series."""
     approach = CONTACT.approach(LOAD)
@@ -120,10 +181,3 @@ def test_a_roller_and_its_film_are_in_series():
         np.testing.assert_allclose(force(law, np.zeros(20), dry.inverse(forces) - apart), forces, rtol=2e-3)
         state = roller.approach(load)
         assert float(law.nearer(np.array([state]))[0]) == pytest.approx(state - film.central(load))
-
-
-def test_a_law_of_secants_has_no_film():
-    """What it is told by is where its states begin, which a film moves."""
-    law = WithFilm(Printed(ForceCurve.hertz(K), None, datum=1e-6), FILM, LOAD)
-    with pytest.raises(InputError, match="law of a contact with a film: received printed; allowed: one that"):
-        law.prepare(SHORT)

@@ -10,6 +10,20 @@ from asperity.kernels.options import INNER, compiled
 SHIFTED = 0  # F = f(approach - h)
 SECANT = 1  # F = f(approach)/r (r - h), r = approach + datum: Eq. 2.1 as printed
 TABLE = 2  # F = g(approach)^1.5, g interpolated at every position
+ITERATIONS = 100
+FILM_TOLERANCE = 1e-12
+"""Of the approach of bodies with a film, over its thickness."""
+
+
+class SeriesFilm(NamedTuple):
+    """A film in series with a law, thinner by a power of the force: the bodies are as far apart."""
+
+    thickness: float  # under the lightest force and less, m; 0 of dry bodies
+    lightest: float  # that force, N
+    power: float  # below zero
+
+
+DRY = SeriesFilm(0.0, 1.0, 0.0)
 
 
 class Prepared(NamedTuple):
@@ -32,6 +46,7 @@ class Prepared(NamedTuple):
     damping: float  # contact damping, N s/m
     damped_in_flight: bool  # whether the damper also acts, and pulls, out of contact (Eq. 2.2)
     upper: float  # largest argument that the data cover, m: of f, or the last state of a table
+    film: SeriesFilm  # that keeps the bodies apart
 
 
 @compiled(**INNER)
@@ -122,7 +137,7 @@ def table_root(states, values, slopes, step, touch, approach):  # type: ignore[n
 
 @compiled(**INNER)
 def evaluate(law, step, approach):  # type: ignore[no-untyped-def]
-    """Elastic force of a law at a position, N, for an approach, m, and its derivative by that, N/m."""
+    """Elastic force of a law at a position, N, and its derivative, N/m, by the approach of its bodies, m."""
     approach -= law.planes[step]
     if law.form == TABLE:
         g, slope = table_root(law.states, law.values, law.slopes, step, law.touches[step], approach)
@@ -158,19 +173,70 @@ def with_damping(elastic, slope, rate, rate_compliance, damping, in_flight):  # 
     return force, slope * share
 
 
+@compiled(**INNER)
+def film_under(film, force):  # type: ignore[no-untyped-def]
+    """Thickness of a film under a force, N; m, and its derivative, m/N."""
+    if force <= film.lightest or film.thickness == 0.0:
+        return film.thickness, 0.0
+    thickness = film.thickness * (force / film.lightest) ** film.power
+    return thickness, film.power * thickness / force
+
+
+@compiled(**INNER)
+def refine(low, high, approach, residual, slope, iteration):  # type: ignore[no-untyped-def]
+    """Newton step inside a bracket that it narrows; bisection where Newton fails or dawdles.
+
+    The bracket is infinite where still open; the residual rises. Returns the bracket and the next trial
+    value.
+    """
+    if residual < 0.0:
+        low = max(low, approach)
+    else:
+        high = min(high, approach)
+    # without contact the residual's slope is one; a smaller one is a texture that outruns the approach
+    trial = approach - residual / max(slope, 1.0)
+    closed = low > -np.inf and high < np.inf
+    # eight steps are more than Newton needs; from there every other one halves the bracket, so that it ends
+    if closed and (not (low < trial < high) or (iteration > 8 and iteration % 2 == 0)):
+        trial = 0.5 * (low + high)
+    return low, high, trial
+
+
+@compiled(**INNER)
+def without_film(law, step, approach):  # type: ignore[no-untyped-def]
+    """Approach of the bodies at a position, m, of that of bodies and film, m."""
+    film = law.film
+    if film.thickness == 0.0:
+        return approach
+    low = approach
+    high = approach + film.thickness
+    bodies = high
+    for iteration in range(ITERATIONS):
+        force, stiffness = evaluate(law, step, bodies)
+        apart, thinner = film_under(film, force)
+        residual = bodies - apart - approach
+        if abs(residual) <= FILM_TOLERANCE * film.thickness:
+            break
+        low, high, bodies = refine(low, high, bodies, residual, 1.0 - thinner * stiffness, iteration)
+    return bodies
+
+
 @compiled(cache=True)
 def evaluate_all(law, approach, first):  # type: ignore[no-untyped-def]
     """Elastic forces, N, and derivatives, N/m, from the position `first` on, for one approach each (n,), m.
 
-    And the number of positions at which the law is continued beyond its data.
+    The approaches are those of bodies and film. And the number of positions at which the law is continued
+    beyond its data.
     """
     force = np.empty(approach.size)
     slope = np.empty(approach.size)
     beyond = 0
     for i in range(approach.size):
         step = first + i
-        force[i], slope[i] = evaluate(law, step, approach[i])
-        argument = approach[i] - law.planes[step]
+        bodies = without_film(law, step, approach[i])
+        force[i], stiffness = evaluate(law, step, bodies)
+        slope[i] = stiffness / (1.0 - film_under(law.film, force[i])[1] * stiffness)
+        argument = bodies - law.planes[step]
         if law.form == SHIFTED:
             argument -= texture_at(law.states, law.values, step, argument)[0]
         beyond += argument > law.upper

@@ -13,11 +13,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.kernels.options import INNER, LOOP, ONCE, REASSOCIATE, compiled
-from asperity.kernels.pointforce import Prepared, evaluate, with_damping
+from asperity.kernels.pointforce import (
+    ITERATIONS,
+    Prepared,
+    SeriesFilm,
+    evaluate,
+    film_under,
+    refine,
+    with_damping,
+)
 from asperity.kernels.rail import Channels, advance_channels, press_rail, rail_compliance
 
 FORCE_TOLERANCE = 1e-10  # of the force plus the load, at the end of each step
-ITERATIONS = 100
 SWEEPS = 200
 SETTLED = 4.0 * FORCE_TOLERANCE
 """Change of a force over a sweep, of itself plus the load, that counts as none."""
@@ -95,51 +102,38 @@ class Histories(NamedTuple):
 
 
 @compiled(**INNER)
-def refine(low, high, approach, residual, slope, iteration):  # type: ignore[no-untyped-def]
-    """Newton step inside a bracket that it narrows; bisection where Newton fails or dawdles.
-
-    The bracket is infinite where still open; the residual rises. Returns the bracket and the next trial
-    value.
-    """
-    if residual < 0.0:
-        low = max(low, approach)
-    else:
-        high = min(high, approach)
-    # without contact the residual's slope is one; a smaller one is a texture that outruns the approach
-    trial = approach - residual / max(slope, 1.0)
-    closed = low > -np.inf and high < np.inf
-    # eight steps are more than Newton needs; from there every other one halves the bracket, so that it ends
-    if closed and (not (low < trial < high) or (iteration > 8 and iteration % 2 == 0)):
-        trial = 0.5 * (low + high)
-    return low, high, trial
-
-
-@compiled(**INNER)
-def solve_law(evaluate, law, step, free, load, guess, damping, in_flight, relative):  # type: ignore[no-untyped-def]
+def solve_law(evaluate, law, film, step, free, load, guess, damping, in_flight, relative):  # type: ignore[no-untyped-def]
     """Contact force at the end of a step, N, its elastic part, evaluations of the law, how it was found.
 
-    ``evaluate(law, step, approach)`` gives elastic force and stiffness, `damping`, N s/m, and `in_flight` are
-    of `with_damping`. `free` is from `free_of`, `load` the scale of the force and `guess` the force expected,
-    N; the force is exact to `relative` of itself plus the load.
+    ``evaluate(law, step, approach)`` gives elastic force and stiffness of bodies that a film keeps
+    apart, `damping`, N s/m, and `in_flight` are of `with_damping`. `free` is from `free_of`, `load` the scale
+    of the force and `guess` the force expected, N; the force is exact to `relative` of itself plus the load.
+    What is looked for is the approach of the bodies.
     """
     free_approach, rate, compliance, rate_compliance = free
     low = -np.inf
     high = np.inf
     approach = free_approach - compliance * guess
-    elastic = 0.0
+    if film.thickness > 0.0:
+        damped = damping * (rate - rate_compliance * guess)
+        approach += film_under(film, guess - damped)[0]
+    elastic = apart = 0.0
     for iteration in range(ITERATIONS):
         elastic, stiffness = evaluate(law, step, approach)
+        apart, thinner = film_under(film, elastic)
+        slope = 1.0 - thinner * stiffness
         force, stiffness = with_damping(elastic, stiffness, rate, rate_compliance, damping, in_flight)
-        residual = approach - free_approach + compliance * force
+        residual = approach - apart - free_approach + compliance * force
         # the last term is what rounding leaves of the approach
         limit = relative * compliance * (abs(force) + load) + 1e-15 * abs(free_approach)
         if abs(residual) <= limit:
             return force, elastic, iteration + 1, FOUND if iteration else AS_GUESSED
-        low, high, approach = refine(low, high, approach, residual, 1.0 + compliance * stiffness, iteration)
+        slope += compliance * stiffness
+        low, high, approach = refine(low, high, approach, residual, slope, iteration)
         if damping > 0.0 and abs(high - low) <= limit:
             # a damper engages with a jump: the force lies inside it
-            return (free_approach - approach) / compliance, elastic, iteration + 1, FOUND
-    return (free_approach - approach) / compliance, elastic, ITERATIONS, MISSED
+            return (free_approach + apart - approach) / compliance, elastic, iteration + 1, FOUND
+    return (free_approach + apart - approach) / compliance, elastic, ITERATIONS, MISSED
 
 
 @compiled(**INNER)
@@ -151,9 +145,10 @@ def solve_prepared(laws, k, step, free, load, guess):  # type: ignore[no-untyped
         stack.form[k], stack.planes[k], stack.states[k, :states], stack.values[k], stack.slopes[k],
         stack.touches[k], stack.knots[k, :knots], stack.coefficients[k], stack.exponent[k],
         stack.bilateral[k], stack.datum[k], stack.damping[k], stack.damped_in_flight[k], stack.upper[k],
+        SeriesFilm(stack.film[k, 0], stack.film[k, 1], stack.film[k, 2]),
     )  # fmt: skip
     return solve_law(
-        evaluate, law, step, free, load, guess, law.damping, law.damped_in_flight, FORCE_TOLERANCE
+        evaluate, law, law.film, step, free, load, guess, law.damping, law.damped_in_flight, FORCE_TOLERANCE
     )
 
 

@@ -9,17 +9,12 @@ import numpy as np
 
 from asperity.arguments import Array, require
 from asperity.contact.film import Film
-from asperity.kernels.curves import monotone_slopes
-from asperity.kernels.pointforce import SHIFTED, TABLE, Prepared, evaluate_all
+from asperity.kernels import pointforce
 from asperity.laws import spec
 from asperity.reduction.stiffness import ForceCurve
 
 LIGHTEST, HEAVIEST = 1e-5, 1e2
 """Forces of the curve, over the load: below the first one nothing is pushed, beyond the last it goes on."""
-LIGHT = np.geomspace(5e-4, 0.6, 10)
-"""Approaches of further states of a table, over that under the load."""
-ROUNDS = 6
-"""Of Newton's method in a table."""
 KNOTS = 160
 """Of the curve: its force is that of film and bodies in series within 1e-4."""
 
@@ -28,13 +23,14 @@ KNOTS = 160
 class WithFilm:
     """A law whose bodies are as far apart as the film of oil between them is thick under the force.
 
-    Under a force F the approach is that of the dry law less h(F), in the middle of the contact. Where a law
-    has states, each counts as much less as the film of a smooth contact there is thick.
+    Under a force F the approach is that of the dry law less h(F), in the middle of the contact. A force curve
+    that follows a texture has both in one, and each state of the texture counts as much less as the film of a
+    smooth contact there is thick; in all other laws the film is found with the force, step by step.
 
     Parameters
     ----------
     law : Law
-        That follows a force curve, or a table.
+        That is laid out for the compiled stepper.
     film : Film
         Between smooth bodies.
     load : float
@@ -59,12 +55,12 @@ class WithFilm:
     def prepare(self, positions: spec.ArrayLike) -> spec.Prepared:
         """Lay the law out on positions (n,) of the contact, m."""
         dry = self.law.prepare(positions)
-        allowed = "one that follows a force curve, or looks forces up in a table"
-        fits = isinstance(dry, Prepared) and dry.form in (SHIFTED, TABLE)
-        require(fits, "law of a contact with a film", self.name, allowed)
-        assert isinstance(dry, Prepared)
-        if dry.form == TABLE:
-            return self._looked_up(dry)
+        fits = isinstance(dry, pointforce.Prepared)
+        require(fits, "law of a contact with a film", self.name, "one that is not solved in every step")
+        assert isinstance(dry, pointforce.Prepared)
+        if dry.form != pointforce.SHIFTED:
+            thickest = float(self.thickness(np.array(0.0)))
+            return dry._replace(film=pointforce.SeriesFilm(thickest, LIGHTEST * self.load, self._exponent))
         of_curve = dry.knots, dry.coefficients, dry.exponent, dry.upper, dry.bilateral
         key = tuple(np.asarray(each).tobytes() for each in (dry.states, *of_curve))
         if key not in self._softened:  # the same all along the path, which is laid out piece by piece
@@ -74,39 +70,6 @@ class WithFilm:
                 "exponent": float(curve.exponent), "upper": float(curve.upper),
             }  # fmt: skip
         return dry._replace(**self._softened[key])
-
-    def _looked_up(self, dry: Prepared) -> Prepared:
-        """A table of forces with the film, in its states and in further ones of light contacts."""
-        lighter = self.film.contact.approach(self.load) * LIGHT
-        states = self.nearer(np.unique(np.append(dry.states, lighter)))
-        touches = dry.touches - self.thickness(np.array(0.0))
-        root = np.asfortranarray(np.column_stack([self._root_at(dry, touches, each) for each in states]))
-        slopes = np.asfortranarray(monotone_slopes(states, root))
-        return dry._replace(
-            states=states, values=root, slopes=slopes, touches=touches, upper=float(states[-1])
-        )
-
-    def _root_at(self, dry: Prepared, touches: Array, approach: float) -> Array:
-        """F^(2/3) of a table at an approach from its planes with the film, m; below touch less than 0.
-
-        Dry bodies would have come nearer by h(F): Newton's method in the logarithm of how far they overlap,
-        from the overlap of smooth bodies on.
-        """
-        contact = self.film.contact
-        closed = approach - touches
-        least = contact.approach(LIGHTEST * self.load)
-        overlap = np.maximum(approach - dry.touches, least)
-        for _ in range(ROUNDS):
-            force, stiffness, _ = evaluate_all(dry, dry.planes + dry.touches + overlap, 0)
-            film = self.thickness(force)
-            missed = overlap - film - (approach - dry.touches)
-            rising = overlap * (
-                1.0 - self._exponent * film * stiffness / np.maximum(force, LIGHTEST * self.load)
-            )
-            overlap = np.maximum(overlap * np.exp(np.clip(-missed / rising, -2.0, 2.0)), least)
-        force, _, _ = evaluate_all(dry, dry.planes + dry.touches + overlap, 0)
-        steep = contact.stiffness_constant ** (2.0 / 3.0)
-        return np.where(closed > 0.0, np.cbrt(force) ** 2, steep * closed)
 
     def nearer(self, approaches: Array) -> Array:
         """Approaches (k,), m, less the film of a smooth contact at each."""

@@ -4,7 +4,7 @@ import numpy as np
 
 from asperity.arguments import Array, ArrayLike, as_row
 from asperity.kernels.curves import monotone_slopes
-from asperity.kernels.pointforce import SECANT, SHIFTED, TABLE, Prepared, evaluate_all
+from asperity.kernels.pointforce import DRY, SECANT, SHIFTED, TABLE, Prepared, evaluate_all
 from asperity.laws.spec import Law
 from asperity.reduction.stiffness import PIECE, ForceCurve, ForceTable
 from asperity.reduction.texture import StateTexture
@@ -34,7 +34,7 @@ def on_curve(
     force = curve.knots, curve.coefficients, float(curve.exponent), curve.bilateral
     damper = float(damping), damped_in_flight
     form = SHIFTED if datum is None else SECANT
-    return Prepared(form, planes, *followed, *force, float(datum or 0.0), *damper, float(curve.upper))
+    return Prepared(form, planes, *followed, *force, float(datum or 0.0), *damper, float(curve.upper), DRY)
 
 
 def _plane_at(plane: StateTexture | None, positions: Array) -> Array:
@@ -60,10 +60,10 @@ def on_table(
     for first in range(0, at.size, PIECE):
         piece = slice(first, first + PIECE)
         root[piece], slopes[piece], touches[piece] = _laid_out(table, at[piece])
-    no_curve = np.zeros(2), np.zeros((1, 4)), 1.5, False
+    no_curve = np.zeros(2), np.zeros((1, 4)), 1.5, False, 0.0
     damper = float(damping), False
     planes = _plane_at(plane, at)
-    return Prepared(TABLE, planes, states, root, slopes, touches, *no_curve, 0.0, *damper, float(states[-1]))
+    return Prepared(TABLE, planes, states, root, slopes, touches, *no_curve, *damper, float(states[-1]), DRY)
 
 
 def _laid_out(table: ForceTable, at: Array) -> tuple[Array, Array, Array]:

@@ -173,7 +173,7 @@ def in_contact(law: Prepared | SteppedLaw, first: int, force: Array, approach: A
 def steps_beyond(law: Prepared, first: int, approach: Array) -> int:
     """Number of steps from one of a piece on at which its law is beyond its data, at approaches (n,), m."""
     lowest = float(law.values.min()) if law.form == SHIFTED else 0.0
-    if approach.max() <= float(law.planes.min()) + law.upper + lowest:  # as hardly ever not
+    if approach.max() <= float(law.planes.min()) + law.upper + lowest - law.film.thickness:  # as mostly
         return 0
     return int(evaluate_all(law, approach, first)[2])
 

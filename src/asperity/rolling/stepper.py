@@ -9,7 +9,7 @@ import numpy as np
 from asperity.arguments import NDArray
 from asperity.errors import ComputationError, InputError
 from asperity.kernels import stepping
-from asperity.kernels.pointforce import Prepared, evaluate
+from asperity.kernels.pointforce import DRY, Prepared, evaluate
 from asperity.laws.spec import SettlingLaw, SteppedLaw, settles
 from asperity.progress import Progress
 from asperity.rolling.course import Course, in_contact, stacked, steps_beyond
@@ -171,12 +171,12 @@ class Stepper:
         damping = float(self.course.laws[k].damping)
         solve = stepping.solve_law.py_func
         if isinstance(law, Prepared):
-            in_flight = law.damped_in_flight
-            return solve(evaluate, law, row, free, load, guess, damping, in_flight, stepping.FORCE_TOLERANCE)
+            damper = damping, law.damped_in_flight
+            return solve(evaluate, law, law.film, row, free, load, guess, *damper, stepping.FORCE_TOLERANCE)
         step = self.offset + row
         if settles(law) and (settled := _settled(law, step, free, damping)) is not None:
             return *settled, 1, stepping.FOUND
-        return solve(_evaluate, law, step, free, load, guess, damping, False, STEPPED_TOLERANCE)
+        return solve(_evaluate, law, DRY, step, free, load, guess, damping, False, STEPPED_TOLERANCE)
 
     def _ran_away(self) -> ComputationError:
         motion, course = self.motion, self.course

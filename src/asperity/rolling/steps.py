@@ -27,7 +27,7 @@ from scipy.linalg import block_diag, eigh
 
 from asperity.arguments import Array, ArrayLike, NDArray
 from asperity.errors import CoarseSamplingWarning, InputError, percent
-from asperity.kernels.pointforce import Prepared, evaluate_all
+from asperity.kernels.pointforce import DRY, Prepared, evaluate_all
 from asperity.laws.spec import SteppedLaw
 from asperity.structures.body import Body
 from asperity.written_numbers import engineering, rounded
@@ -257,7 +257,8 @@ def largest_values(law: Prepared | SteppedLaw, at_rest: float) -> tuple[float, f
     force = 0.0
     if np.isfinite(law.upper):
         height = law.values.max(axis=1) if not len(law.slopes) else 0.0
-        forces, slopes, _ = evaluate_all(law, law.planes + height + law.upper, 0)
+        dry = law._replace(film=DRY)  # which is stiffer
+        forces, slopes, _ = evaluate_all(dry, law.planes + height + law.upper, 0)
         stiffness = max(at_rest, float(slopes.max()))
         force = float(forces.max())
     # a force δⁿ becomes stiffer by (load)^(1 − 1/n)
