@@ -9,7 +9,8 @@ from asperity import Crowning, SlicedContact
 from asperity.contact.film import Film, LineFilm
 from asperity.contact.hertz import in_groove
 from asperity.errors import InputError
-from asperity.kernels.pointforce import evaluate_all
+from asperity.kernels.pointforce import evaluate, evaluate_all
+from asperity.kernels.stepping import AS_GUESSED, FOUND, solve_law
 from asperity.laws.film import LIGHTEST, WithFilm
 from asperity.laws.hertz import HertzLaw
 from asperity.laws.layout import force
@@ -19,8 +20,11 @@ from asperity.laws.shifted import Shifted
 from asperity.laws.table import Table
 from asperity.reduction.stiffness import ForceCurve, ForceTable
 from asperity.reduction.texture import StateTexture
+from asperity.rolling.course import steps_beyond
+from asperity.rolling.roll import roll_bodies
+from asperity.rolling.steps import largest_values
 from asperity.structures.body import Body
-from one_contact import roll_ball
+from one_contact import Stepped
 
 CONTACT = in_groove(115e9, 3.97e-3, 4.13e-3, 15.55e-3)
 FILM = Film(CONTACT, 1.77, 17.3e-3, 18.5e-9)
@@ -137,21 +141,70 @@ def test_a_law_that_is_solved_in_every_step_has_no_film():
         WithFilm(Solved(), FILM, LOAD).prepare(SHORT)
 
 
+STATES = CONTACT.approach(LOAD) * np.array([0.2, 0.5, 1.0, 1.7, 2.6, 4.2, 8.0])
+
+
+@pytest.mark.parametrize("beside", [lambda dry: dry, Stepped], ids=["compiled", "from Python"])
 @pytest.mark.parametrize("damping", [0.0, 200.0])
-def test_in_motion_every_step_meets_bodies_and_film(damping):
-    """A ball that bounces over waves: its force is that of the approach, found apart, and of the damper."""
-    waves = 1e-6 * np.cos(2.0 * np.pi * np.arange(4000) / 25.0)
-    states = CONTACT.approach(LOAD) * np.array([0.2, 0.5, 1.0, 1.7, 2.6, 4.2, 8.0])
-    pressed = K * np.maximum(np.subtract.outer(states, waves), 0.0) ** 1.5
-    law = WithFilm(Table(ForceTable(pressed, states, 0.0, 1e-5, waves), damping), FILM, LOAD)
-    run = roll_ball(None, Body.rigid(0.05, LOAD), law, speed=1.0, start=1e-3, duration=0.03, time_step=1e-6)
-    elastic = force(law, run.position, run.relative_displacement)
-    assert run.contact_loss_share > 0.02
+def test_in_motion_every_step_meets_bodies_and_film(damping, beside):
+    """Two balls bounce over waves, one without film: forces are those of approach and damper, found apart."""
+    waves = 1e-6 * np.cos(2.0 * np.pi * np.arange(400) / 25.0)
+    pressed = K * np.maximum(np.subtract.outer(STATES, waves), 0.0) ** 1.5
+    dry = Table(ForceTable(pressed, STATES, 0.0, 1e-5, waves), damping)
+    laws = [beside(dry), WithFilm(dry, FILM, LOAD)]
+    run = roll_bodies(
+        None, [Body.rigid(0.05, LOAD)] * 2, laws, positions=[0.0, 1e-5], speed=1.0, start=1e-3, duration=2e-3,
+        time_step=1e-6,
+    )  # fmt: skip
     assert run.unconverged_steps == 0
-    ahead, now, before = (run.relative_displacement[2 - i : 30_001 - i] for i in range(3))
-    damped = elastic[2:] + damping * (1.5 * ahead - 2.0 * now + 0.5 * before) / 1e-6
-    expected = np.where(elastic[2:] > 0.0, np.maximum(damped, 0.0), 0.0)
-    np.testing.assert_allclose(run.contact_force[2:], expected, rtol=1e-6, atol=1e-6 * LOAD)
+    for law, place, found, approach in zip(
+        (dry, laws[1]), run.positions, run.contact_force, run.relative_displacement, strict=True
+    ):
+        elastic = force(law, place, approach)
+        ahead, now, before = (approach[2 - i : 2001 - i] for i in range(3))
+        damped = elastic[2:] + damping * (1.5 * ahead - 2.0 * now + 0.5 * before) / 1e-6
+        expected = np.where(elastic[2:] > 0.0, np.maximum(damped, 0.0), 0.0)
+        assert np.mean(found == 0.0) > 0.02
+        np.testing.assert_allclose(found[2:], expected, rtol=1e-6, atol=3e-6 * LOAD)
+
+
+def solved(law, free, guess, damping):
+    """Force, elastic part, evaluations and how they were found, at the end of a step of 1 µs."""
+    of_step = free, 1e-2, 1e-9, 1.5e-3
+    return solve_law.py_func(evaluate, law, law.film, 0, of_step, LOAD, guess, damping, False, 1e-10)
+
+
+def test_a_force_that_is_right_is_found_as_such_beside_a_damper():
+    law = WithFilm(looked_up(STATES), FILM, LOAD).prepare(np.full(1, 3e-4))
+    found, elastic, evaluations, how = solved(law, 1e-6, 0.0, 30.0)
+    assert how == FOUND
+    assert found == pytest.approx(elastic + 30.0 * (1e-2 - 1.5e-3 * found), rel=1e-9)
+    assert float(evaluate_all(law, np.array([1e-6 - 1e-9 * found]), 0)[0][0]) == pytest.approx(
+        elastic, rel=1e-6
+    )
+    assert evaluations > 1
+    assert solved(law, 1e-6, found, 30.0)[2:] == (1, AS_GUESSED)
+
+
+def test_a_damper_that_engages_leaves_the_film_where_it_touches():
+    """Its jump is as large as it would take to hold the bodies there."""
+    law = WithFilm(looked_up(STATES), FILM, LOAD).prepare(np.full(1, 3e-4))
+    touch = -FILM.central(LIGHTEST * LOAD)
+    found, elastic, _, how = solved(law, touch + 3e-9, 0.0, 1e6)
+    assert how == FOUND
+    assert found == pytest.approx(3e-9 / 1e-9, rel=1e-6)
+    assert elastic == pytest.approx(0.0, abs=1e-6)
+
+
+def test_what_lies_beyond_the_states_is_told_of_the_bodies():
+    """A film short of the last state they are at it; the largest stiffness is that of dry ones."""
+    law = WithFilm(looked_up(STATES), FILM, LOAD).prepare(SHORT)
+    last = CONTACT.force(STATES[-1])
+    there = STATES[-1] - FILM.central(last)
+    assert steps_beyond(law, 0, there + np.linspace(-2e-9, 2e-9, 64)) == 32
+    stiffness, _, force_there = largest_values(law, 1.0)
+    assert stiffness == pytest.approx(CONTACT.tangent_stiffness(STATES[-1]), rel=1e-6)
+    assert force_there == pytest.approx(last, rel=1e-6)
 
 
 def test_a_linear_law_is_softer_and_nearer_by_the_film():
