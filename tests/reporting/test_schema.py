@@ -108,7 +108,7 @@ CHANGING = "speed changes"
 
 
 def test_a_bearing_writes_and_draws_what_its_schema_says(runs):
-    tree = runs(BEARING | {"wear_coefficient": 1e-8})
+    tree = runs(BEARING | {"wear_coefficient": 1e-8, "friction": 0.1})
     others = CHANGING, bearing.OILED, bearing.OF_ROLLERS
     needed = [entry for entry in OWN if not any(each in entry.condition for each in others)]
     assert_as_declared(tree, [*OWN, *ENTRIES], needed)

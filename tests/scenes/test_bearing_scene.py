@@ -29,6 +29,7 @@ from asperity.schema import bearing as schema
 from asperity.schema import spectra
 from asperity.structures.raceway_wear import raceway_wear
 from asperity.studies.member import kept
+from asperity.written_numbers import rounded
 from command_line import program
 from small_cases import BEARING
 
@@ -394,6 +395,30 @@ def test_raceways_wear_by_the_work_of_sliding_where_a_coefficient_is_given(runs)
     assert "Wear of the raceways" in page
     assert "if all of each contact slips" in page
     assert any("Archard" in each for each in json.loads(tree.attrs["citations"]))
+
+
+def test_friction_takes_less_heat_than_if_all_slipped_and_turns_the_rings_against_it(runs):
+    """At rest; and in time under the forces of the run, whose torque hardly differs on even raceways."""
+    tree = runs(BEARING | {"friction": 0.1})
+    found = group(tree)
+    assert "friction_heat" not in group(runs(BEARING))
+    heat, most = found["friction_heat"].values, 0.1 * found["sliding_heat"].values
+    touching = np.isfinite(most)
+    np.testing.assert_array_equal(np.isfinite(heat), touching)
+    assert np.all(heat[touching] <= 1.005 * most[touching])
+    assert 0.5 * most[touching].sum() < heat[touching].sum() < 0.99 * most[touching].sum()
+    slips = found["slip_share"].values[touching]
+    assert 0.0 <= slips.min() < slips.max() < 1.0
+    np.testing.assert_allclose(found["spin_moment"].values[touching], 0.0, atol=1e-9)  # no contact angle
+    torque = found["friction_torque"].values[0]
+    power = tree["rolling/bearing_friction_power"].values[0]
+    turns = as_case(BEARING).kinematics
+    assert power.mean() / (2.0 * np.pi * turns.inner) == pytest.approx(torque, rel=1e-9)
+    assert power.mean() == pytest.approx(np.nansum(heat, axis=(0, 2)).mean(), rel=0.1)
+    page = page_of(tree)
+    assert "With the friction of the case, parts of a contact stick" in page
+    assert f"ask the rings for {rounded(1e3 * torque)} N mm" in page
+    assert any("Kalker" in each for each in json.loads(tree.attrs["citations"]))
 
 
 def test_no_force_is_written_below_zero_where_a_ball_leaves_the_ring(runs):

@@ -151,6 +151,13 @@ class BearingUnderLoad(AnyCase):
     cage_slip: tuple[float, ...] = key(
         _SLIPS, [0.0, 0.0], "least and largest share by which the cage lags, drawn anew at each turn"
     )
+    friction: float | None = optional(
+        Number(at_least=0.001, at_most=1),
+        0.1,
+        "coefficient of friction of balls on raceways, up to which a contact sticks",
+        "friction is not looked at",
+        "0.01 to 0.5: balls in oil and dry ones lie between",
+    )
     wear_coefficient: float | None = optional(
         Number(above=0, at_most=1),
         1e-8,

@@ -152,10 +152,11 @@ class RollerBearingUnderLoad(BearingUnderLoad):
             remedy = "Its force on rollers is that of slices; the others are made for the ellipse of a ball."
             yield InputError("laws", ", ".join(others), f'"{BY_SLICES}"', remedy)
             return
-        if self.wear_coefficient is not None:
-            allowed = "none: rollers slide nowhere but at ribs, which are not in it"
-            yield InputError("wear_coefficient", f"{self.wear_coefficient:g}", allowed, "Leave it out.")
-            return
+        for name in ("friction", "wear_coefficient"):
+            if (given := getattr(self, name)) is not None:
+                allowed = "none: rollers slide nowhere but at ribs, which are not in it"
+                yield InputError(name, f"{given:g}", allowed, "Leave it out.")
+                return
         if self.axial > 0.0 and self.bearing.bearing.contact_angle == 0.0:
             remedy = "Rollers slide along such raceways, and ribs are not in it. Give a contact_angle."
             allowed = "0 N where bearing.contact_angle is 0"

@@ -98,15 +98,18 @@ class SlidingContact:
         Largest slip against Coulomb's law, over the largest rigid slip.
     outcome : Outcome
         How the solution ended.
+    creepage_curvature : float
+        χ, by which the creepage along is less at y across, over y², 1/m².
 
     Notes
     -----
-    `work` in steady rolling is what drives it, −(F_x ξ + F_y η + M φ), since what it stores stays the same;
-    in a step of a transient it is the mean of that before and after, less the growth of the elastic energy
-    over the distance, which may be below zero in a single step where the slip turns back; in a shift, each
-    cell slips under the mean of its bounds before and after. Where pressures stay as they are and slip goes
-    one way that is ∫ F · d(shift) less the growth of the elastic energy, however long the shift. In
-    rolling of unlike bodies the displacement by their pressure is counted, too: they need no force to slip.
+    `work` in steady rolling is what drives it, −(F_x ξ + F_y η + M φ − C χ), C being `second_moment`, since
+    what it stores stays the same; in a step of a transient it is the mean of that before and after, less the
+    growth of the elastic energy over the distance, which may be below zero in a single step where the slip
+    turns back; in a shift, each cell slips under the mean of its bounds before and after. Where pressures
+    stay as they are and slip goes one way that is ∫ F · d(shift) less the growth of the elastic energy,
+    however long the shift. In rolling of unlike bodies the displacement by their pressure is counted, too:
+    they need no force to slip.
 
     Examples
     --------
@@ -134,6 +137,7 @@ class SlidingContact:
     convolutions: int
     residual: float
     outcome: Outcome
+    creepage_curvature: float = 0.0
 
     @property
     def converged(self) -> bool:
@@ -154,6 +158,12 @@ class SlidingContact:
         return float(arms.sum()) * self.normal.half_space.cell_area
 
     @property
+    def second_moment(self) -> float:
+        """∫ y² · traction along, on the first body, N m²: what a curvature of the creepage works against."""
+        _, y = cell_places(self.normal.half_space)
+        return float((y**2 * self.traction[0]).sum()) * self.normal.half_space.cell_area
+
+    @property
     def limit(self) -> float:
         """Largest force that friction carries, N."""
         return float(self.bound.sum()) * self.normal.half_space.cell_area
@@ -172,7 +182,8 @@ class SlidingContact:
     def dissipated_power(self) -> float:
         """What friction turns into heat at the rolling speed, W: `work` times it.
 
-        In steady rolling exactly −V (F_x ξ + F_y η + M φ), from `force`, `creepage` and `moment`.
+        In steady rolling exactly −V (F_x ξ + F_y η + M φ − C χ), from `force`, `creepage`, `moment` and
+        `second_moment`.
         """
         return self.work * self.speed
 

@@ -5,10 +5,11 @@ distance δ material slips by s = δ r + u − u', r the rigid creep and a prime
 same material. Its mean traction ½ (p + p') turns W = −½ ∫ (p + p')·s into heat. As displacements are
 reciprocal, ∫ p'·u = ∫ p·u', and so
 
-    W = −½ δ [(F + F')·ξ + (M + M') φ] − (E − E').
+    W = −½ δ [(F + F')·ξ + (M + M') φ − (C + C') χ] − (E − E'),
 
-In steady rolling E is E'. In a shift a cell slips under its bound alone, whatever it has carried before:
-W = ∫ µ p |s|, with the mean of its pressures.
+C = ∫ y² p along being what the curvature χ of the creepage works against. In steady rolling E is E'. In a
+shift a cell slips under its bound alone, whatever it has carried before: W = ∫ µ p |s|, with the mean of its
+pressures.
 """
 
 import math
@@ -44,7 +45,7 @@ def with_work(
     if distance == 0.0:
         return replace(found, work=_shifted(found, before, displacement), elastic_energy=stored)
     past = before or found
-    work = 0.5 * (driven(found, found.creepage) + driven(past, found.creepage))
+    work = 0.5 * (driven(found, found) + driven(past, found))
     if before is not None:
         work -= (stored - before.elastic_energy) / distance
     if coupled:
@@ -52,10 +53,16 @@ def with_work(
     return replace(found, work=work, elastic_energy=stored)
 
 
-def driven(state: SlidingContact, creepage: tuple[float, float, float]) -> float:
-    """What drives creepages and spin against the friction of a state, over the rolled distance, J/m."""
-    (along, across), (xi, eta, spin) = state.force, creepage
-    return -(along * xi + across * eta + (state.moment * spin if spin else 0.0))
+def driven(state: SlidingContact, moved: SlidingContact) -> float:
+    """What drives the creepages of a contact that moved against the friction of a state, J/m of distance."""
+    along, across = state.force
+    xi, eta, spin = moved.creepage
+    against = along * xi + across * eta
+    if spin:
+        against += state.moment * spin
+    if moved.creepage_curvature:
+        against -= state.second_moment * moved.creepage_curvature
+    return -against
 
 
 def _pressed(

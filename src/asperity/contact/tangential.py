@@ -32,6 +32,10 @@ ROUNDS_AGREE, FORCES_AGREE = 1e-4, 1e-6
 """Change of the bound, and error of a force that is given, over the largest there is."""
 LARGE_CREEPAGE = 0.05
 """Above this strains are no longer small."""
+CLOSER = 0.1
+"""Share of the tolerance of slip to which it is found where a force is given."""
+NEWTON_LIKE = 10
+"""Steps towards a force before every other one halves the interval that holds its creepage."""
 SPIN_AHEAD = 1.0 / 6.0
 """Share of the rolled distance by which spin is counted ahead of a cell, as the program CONTACT does."""
 PIVOTING = 0.99
@@ -48,6 +52,7 @@ class _Manner(NamedTuple):
     start: SlidingContact | None
     speed: float  # m/s
     rtol: float
+    curvature: float = 0.0  # of the creepage along over places across, 1/m²
 
     @property
     def kernel(self) -> tuple[float, bool]:
@@ -82,10 +87,10 @@ class FrictionalHalfSpace:
 
     Notes
     -----
-    Slip over a rolled distance δ is ``s = δ (ξ − φ y, η + φ x) + u(x) − u'(x + δ)`` with the displacement
-    u' before, at the same material; in steady rolling u' is u. Traction is at most µ p, and opposite to the
-    slip where there is any: J. J. Kalker, Three-Dimensional Elastic Bodies in Rolling Contact (1990). Small
-    creepages, no inertia, nothing between the bodies.
+    Slip over a rolled distance δ is ``s = δ (ξ − χ y² − φ y, η + φ x) + u(x) − u'(x + δ)``, χ the curvature
+    of the creepage and u' the displacement before, at the same material; in steady rolling u' is u. Traction
+    is at most µ p, and opposite to the slip where there is any: J. J. Kalker, Three-Dimensional Elastic
+    Bodies in Rolling Contact (1990). Small creepages, no inertia, nothing between the bodies.
 
     Examples
     --------
@@ -184,6 +189,7 @@ class FrictionalHalfSpace:
         creepage: tuple[float, float] = (0.0, 0.0),
         spin: float = 0.0,
         *,
+        creepage_curvature: float = 0.0,
         distance: float | None = None,
         force: Forces = (None, None),
         before: SlidingContact | None = None,
@@ -201,6 +207,9 @@ class FrictionalHalfSpace:
             Velocity of the first body against the second over the rolling speed, along and across.
         spin : float
             Likewise the turning velocity about the normal through the middle of the grid, 1/m.
+        creepage_curvature : float
+            By how much, over y², the creepage along is less at y across, 1/m²: of a ball in its groove, see
+            `asperity.contact.groove_creepage`.
         distance : float, optional
             Over which slip is counted, m; by default the length of a cell.
         force : tuple of (float or None)
@@ -228,7 +237,8 @@ class FrictionalHalfSpace:
         distance = self.half_space.spacing[0] if distance is None else distance
         distance = real("rolled distance", distance, allowed, above=0.0)
         speed = real("rolling speed", speed, "at least 0, m/s", at_least=0.0)
-        manner = _Manner(distance, before is None, before, start or before, speed, rtol)
+        curvature = real("curvature of the creepage", creepage_curvature, "a finite number, 1/m^2")
+        manner = _Manner(distance, before is None, before, start or before, speed, rtol, curvature)
         creepage = arguments.two("creepage", creepage, "two numbers, along and across")
         return self._find(normal, (*creepage, spin), force, manner)
 
@@ -362,6 +372,8 @@ class FrictionalHalfSpace:
             share = min(float(np.linalg.norm(force)) / found.limit, 1.0 - 1e-12)
             return force * (-math.log1p(-share) / share if share else 1.0)
 
+        # a solution that starts close enough stays as it is: the force would not follow its creepage
+        manner = manner._replace(rtol=CLOSER * manner.rtol)
         motion = np.array(found.creepage)
         softness = self._influence(*manner.kernel)[2] / (manner.step * normal.area)
         jacobian_inverse = -softness * np.eye(len(index))
@@ -369,7 +381,7 @@ class FrictionalHalfSpace:
         high = math.inf
         longest = math.inf
         missing = stretched(np.array(found.force)[index]) - stretched(target)
-        for _ in range(MAX_ROUNDS):
+        for done in range(MAX_ROUNDS):
             if np.abs(np.array(found.force)[index] - target).max() <= FORCES_AGREE * found.limit:
                 return found
             change = -jacobian_inverse @ missing
@@ -377,7 +389,9 @@ class FrictionalHalfSpace:
                 at = float(motion[index[0]])
                 low, high = (at, high) if missing[0] > 0.0 else (low, at)
                 middle = 0.5 * (low + high)
-                if math.isfinite(middle) and not low < at + change[0] < high:
+                inside = low < at + change[0] < high
+                # a few steps are enough, but where the force hardly changes until a line of cells turns
+                if math.isfinite(middle) and not (inside and (done < NEWTON_LIKE or done % 2)):
                     change[0] = middle - at
                 change[0] = math.copysign(min(abs(change[0]), longest), missing[0])
                 longest = 4.0 * abs(change[0])
@@ -434,6 +448,8 @@ class FrictionalHalfSpace:
         (_, spread, own), rigid = self._influence(ahead, steady), manner.step * complex(xi, eta) - past
         if spin:
             rigid += manner.step * spin * (1j * (x + SPIN_AHEAD * manner.ahead) - y)
+        if manner.curvature:
+            rigid -= manner.step * manner.curvature * y**2
         if self._couples:
             rigid -= _convolved(spread, normal.pressure)
         contact = normal.pressure > 0.0
@@ -465,7 +481,7 @@ class FrictionalHalfSpace:
             stored = 0.5 * float(displaced.real.sum()) * self.half_space.cell_area
         return SlidingContact(
             normal, fields[:2], fields[2:4] * contact, sticks, bound, (xi, eta, spin), manner.speed,
-            math.nan, stored, iterations, convolutions, worst, outcome,
+            math.nan, stored, iterations, convolutions, worst, outcome, manner.curvature,
         )  # fmt: skip
 
 

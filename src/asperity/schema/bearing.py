@@ -51,6 +51,35 @@ SLIDING_HEAT = _bearing(
     "heat of a contact over its coefficient of friction, if all of it slips",
     missing=_BETWEEN,
 )
+RUBBING = "of a ball bearing with friction"
+_rubbed = partial(Entry, "bearing", condition=RUBBING)
+FRICTION_HEAT = _rubbed(
+    "friction_heat(ring, cage_angle, ball)", "W", "heat of friction of a contact", missing=_BETWEEN
+)
+SLIPPING_SHARE = _rubbed(
+    "slip_share(ring, cage_angle, ball)", "1", "share of a contact that slips", missing=_BETWEEN
+)
+BALL_SPIN_MOMENT = _rubbed(
+    "spin_moment(ring, cage_angle, ball)",
+    "N m",
+    "moment of friction of a contact about its normal",
+    missing=_BETWEEN,
+)
+GYRATION = _rubbed(
+    "gyration(cage_angle, ball)",
+    "1",
+    "moment by which a ball gyrates over what friction holds at most",
+    missing=_BETWEEN,
+)
+FRICTION_TORQUE = _rubbed(
+    "friction_torque(law)", "N m", "torque that friction of all contacts asks of the rings, mean over time"
+)
+ROLLING_HEAT = _rolling(
+    "bearing_friction_power(law, time)",
+    "W",
+    "heat of friction of all contacts, quasi-steady",
+    condition=RUBBING,
+)
 _worn = partial(Entry, "bearing", condition="of a ball bearing with a wear_coefficient")
 RACEWAY_ANGLE = _worn("raceway_angle", "rad", "place around a raceway, from the radial load")
 WEAR_RATE = _worn(
@@ -241,6 +270,7 @@ FIRST = {"harmonic": 1}
 KEPT: dict[Entry, dict[str, int]] = {
     HEAVIEST_FILM: {},
     HEAVIEST_PARAMETER: {},
+    FRICTION_TORQUE: {},
     BAND_VELOCITY: {},
     BAND_DEVIATION: {},
     ACCELERATION_LEVEL: {},

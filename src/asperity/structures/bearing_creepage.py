@@ -19,6 +19,16 @@ Ring = Literal["inner", "outer"]
 RINGS: tuple[Ring, Ring] = ("inner", "outer")
 
 
+def ball_axis(bearing: BallBearing, angles: tuple[Array, Array], control: Ring) -> Array:
+    """Inclination of the axes of balls to that of the bearing (...), rad, as in `spin_creepage`."""
+    one_of("control", control, RINGS)
+    share = bearing.ball_diameter / bearing.pitch_diameter
+    inner, outer = angles
+    if control == "outer":
+        return np.arctan2(np.sin(outer), np.cos(outer) + share)
+    return np.arctan2(np.sin(inner), np.cos(inner) - share)
+
+
 def spin_creepage(bearing: BallBearing, angles: tuple[Array, Array], control: Ring) -> tuple[Array, Array]:
     """Spin creepages of balls of which one ring controls the axis: they do not spin on that one.
 
@@ -45,15 +55,10 @@ def spin_creepage(bearing: BallBearing, angles: tuple[Array, Array], control: Ri
     R_i,o = (d_m ∓ D cos α)/2 of the contacts from the axis and the radius R of a ball. T. A. Harris and
     M. N. Kotzalas, Advanced Concepts of Bearing Technology, 5th ed. (2007), chapter 2.
     """
-    one_of("control", control, RINGS)
+    axis = ball_axis(bearing, angles, control)
     radius = 0.5 * bearing.ball_diameter
     pitch = 0.5 * bearing.pitch_diameter
-    share = radius / pitch
     inner, outer = angles
-    if control == "outer":
-        axis = np.arctan2(np.sin(outer), np.cos(outer) + share)
-    else:
-        axis = np.arctan2(np.sin(inner), np.cos(inner) - share)
     on_inner = np.sin(inner) / (pitch - radius * np.cos(inner)) + np.tan(inner - axis) / radius
     on_outer = np.sin(outer) / (pitch + radius * np.cos(outer)) - np.tan(outer - axis) / radius
     if control == "outer":
@@ -67,6 +72,8 @@ class BearingCreepage:
 
     Attributes
     ----------
+    axis : ndarray (m, Z)
+        Inclination of the axis of a ball to that of the bearing, rad.
     spin : ndarray
         Spin creepage, rad/m; zero on the ring that controls the axis of a ball.
     rim : ndarray
@@ -75,6 +82,7 @@ class BearingCreepage:
         ∫ p |s| dA if all of a contact slips, N: the most heat over speed and coefficient of friction.
     """
 
+    axis: Array
     spin: Array
     rim: Array
     sliding: Array
@@ -94,6 +102,7 @@ def creepage_of(loaded: LoadedBearing) -> BearingCreepage:
     by_outer = moments[1] * np.cos(angles[0] - angles[1]) > moments[0]
     spins = np.where(by_outer, spin_creepage(of, angles, "outer"), spin_creepage(of, angles, "inner"))
     radius = 0.5 * of.ball_diameter
+    axis = np.where(by_outer, ball_axis(of, angles, "outer"), ball_axis(of, angles, "inner"))
     rims, sliding = list[Array](), list[Array]()
     grooves = of.inner_conformity * of.ball_diameter, of.outer_conformity * of.ball_diameter
     contacts = of.inner_contact, of.outer_contact
@@ -101,4 +110,4 @@ def creepage_of(loaded: LoadedBearing) -> BearingCreepage:
         curvature = contact_curvature(radius, groove)
         rims.append(-conformal_creepage(each[1], each[1], curvature, contact.radius_x))
         sliding.append(sliding_speed(load, each, spin, curvature, contact.radius_x))
-    return BearingCreepage(spins, np.where(np.isnan(spins), np.nan, rims), np.array(sliding))
+    return BearingCreepage(axis, spins, np.where(np.isnan(spins), np.nan, rims), np.array(sliding))

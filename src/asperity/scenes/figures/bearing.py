@@ -487,11 +487,14 @@ def ball_sliding_table(tree: DataTree) -> ReportTable | None:
         return None
     degrees = _degrees(data.values(tree, bearing.AZIMUTH)[0])
     columns = {"ball at": number_cells(np.round(degrees) + 0.0, "{:.0f}°")}
-    shown = (
+    shown = [
         (bearing.SPIN_CREEPAGE, "spin, rad/m", 1.0),
         (bearing.RIM_CREEPAGE, "sliding at the rim, %", 0.01),
         (bearing.SLIDING_HEAT, "heat/μ, W", 1.0),
-    )
+    ]
+    rubs = data.present(tree, bearing.FRICTION_HEAT)
+    if rubs:
+        shown += [(bearing.SLIPPING_SHARE, "slips, %", 0.01), (bearing.FRICTION_HEAT, "heat, W", 1.0)]
     for row, ring in enumerate(data.words(tree, bearing.RING)):
         for entry, words, size in shown:
             columns[f"{ring}, {words}"] = number_cells(data.values(tree, entry)[row, 0] / size, in_digits(3))
@@ -502,9 +505,20 @@ def ball_sliding_table(tree: DataTree) -> ReportTable | None:
         "slides across the contact: at the rim, over the speed of rolling. The heat is that over the "
         "coefficient of friction "
         f"if all of the contact slips, the most there is: {rounded(every)} W for all contacts together. "
-        "Balls that do not touch both rings are left out."
+        f"{_friction_of(tree) if rubs else ''}Balls that do not touch both rings are left out."
     )
     return table("ball_sliding", "Sliding of the balls", columns, note)
+
+
+def _friction_of(tree: DataTree) -> str:
+    """What friction takes of all contacts."""
+    heat = np.nansum(data.values(tree, bearing.FRICTION_HEAT), axis=(0, 2)).mean()
+    torque = float(data.of_law(tree, bearing.FRICTION_TORQUE, _main(tree)))
+    return (
+        f"With the friction of the case, parts of a contact stick: all contacts together turn "
+        f"{rounded(heat)} W into heat at rest under the load, and as the bearing runs ask the rings for "
+        f"{rounded(1e3 * torque)} N mm. "
+    )
 
 
 def bearing_answers(tree: DataTree) -> Answers:

@@ -1,0 +1,182 @@
+"""Friction of the balls of a bearing: heat and torque where contacts stick and slip in their grooves."""
+
+import math
+import warnings
+from dataclasses import dataclass
+
+import numpy as np
+
+from asperity.arguments import Array, not_negative
+from asperity.contact.creep import SIZES
+from asperity.contact.friction import SlidingContact, cell_places
+from asperity.contact.groove_creepage import contact_curvature
+from asperity.contact.halfspace import HalfSpace
+from asperity.contact.hertz import Hertz
+from asperity.contact.tangential import FrictionalHalfSpace
+from asperity.errors import OutOfRangeWarning
+from asperity.reference.materials import Material
+from asperity.structures.ball_bearing import BallBearing, Kinematics
+from asperity.structures.bearing_creepage import RINGS, BearingCreepage, Ring
+from asperity.structures.bearing_statics import LoadedBearing
+
+CELLS = (24, 48)
+"""Along and across a contact: heat to half a percent."""
+ROOM = 1.1
+"""Size of the grid over that of the contact."""
+DIGITS = 6
+"""To which loads and spins of contacts, rad/m, are told apart."""
+
+
+@dataclass(frozen=True)
+class BallOnRaceway:
+    """A ball that rolls steadily in a groove, which drives or brakes it by no force along the path.
+
+    Parameters
+    ----------
+    contact : Hertz
+        Of ball and raceway.
+    curvature : float
+        Of the surface that both share across, 1/m, see `asperity.contact.groove_creepage.contact_curvature`.
+    bodies : (Material, Material)
+        Ball and ring.
+    friction : float
+        Coefficient of friction.
+    """
+
+    contact: Hertz
+    curvature: float
+    bodies: tuple[Material, Material]
+    friction: float
+
+    @classmethod
+    def of(cls, bearing: BallBearing, ring: Ring, friction: float) -> "BallOnRaceway":
+        """The balls of a bearing on one of its rings."""
+        inner = ring == "inner"
+        conformity = bearing.inner_conformity if inner else bearing.outer_conformity
+        groove = conformity * bearing.ball_diameter
+        return cls(
+            bearing.inner_contact if inner else bearing.outer_contact,
+            contact_curvature(0.5 * bearing.ball_diameter, groove),
+            (bearing.ball_material, bearing.material),
+            not_negative("friction", friction),
+        )
+
+    def roll(self, load: float, spin: float = 0.0) -> SlidingContact:
+        """The contact under a load, N, with a spin creepage, rad/m; the ball is the first body.
+
+        Its creepage is that in the middle: √(ξ/χ) across are the lines of pure rolling.
+        """
+        along, across = self.contact.semi_axes(self.contact.approach(load))
+        spacing = 2.0 * ROOM * along / CELLS[0], 2.0 * ROOM * across / CELLS[1]
+        space = HalfSpace(CELLS, spacing, self.contact.modulus)
+        x, y = cell_places(space)
+        gap = x**2 / (2.0 * self.contact.radius_x) + y**2 / (2.0 * self.contact.radius_y)
+        rolling = FrictionalHalfSpace(space, self.bodies, self.friction)
+        # surfaces run against the path: a ball that is ahead in the middle has a creepage below zero there
+        bow = -self.curvature / (2.0 * self.contact.radius_x)
+        with warnings.catch_warnings():  # that a ball pivots in its groove is what is asked for
+            warnings.filterwarnings("ignore", "A spin of", OutOfRangeWarning)
+            return rolling.roll(
+                space.solve(gap, load=load), spin=spin, creepage_curvature=bow, force=(0.0, None)
+            )
+
+    def work(self, loads: Array, spin: float = 0.0) -> Array:
+        """Heat over the length rolled (...), N, under loads (...), N, between some that are solved."""
+        largest = float(loads.max(initial=0.0))
+        if not largest > 0.0:
+            return np.zeros(loads.shape)
+        shares = [self.roll(load, spin).work / load for load in (largest * SIZES**3).tolist()]
+        pressed = np.maximum(loads, 0.0)
+        return pressed * np.interp(np.cbrt(pressed / largest), SIZES, shares)
+
+
+@dataclass(frozen=True, eq=False)
+class BearingFriction:
+    """Friction of balls on both raceways (2, m, Z), the inner one first; NaN of those that do not touch both.
+
+    Attributes
+    ----------
+    heat : ndarray
+        What friction turns into heat, W.
+    slip_share : ndarray
+        Share of a contact that slips.
+    spin_moment : ndarray
+        Moment of friction about the normal, N m, without sign.
+    gyration : ndarray (m, Z)
+        Moment by which a ball gyrates over what friction holds at most; from 1 on the ball pivots sideways.
+    """
+
+    heat: Array
+    slip_share: Array
+    spin_moment: Array
+    gyration: Array
+
+
+def friction_of_balls(
+    loaded: LoadedBearing, found: BearingCreepage, turning: Kinematics, friction: float
+) -> BearingFriction:
+    """Find what friction does between the balls of a loaded bearing and its rings, in steady rolling.
+
+    Parameters
+    ----------
+    loaded : LoadedBearing
+        The bearing under its load.
+    found : BearingCreepage
+        How its balls slide, as `asperity.structures.bearing_creepage.creepage_of` has it.
+    turning : Kinematics
+        What turns how fast.
+    friction : float
+        Coefficient of friction.
+
+    Returns
+    -------
+    BearingFriction
+
+    Notes
+    -----
+    Spin is that of the ring in control, so that a ball that spins on one raceway is held by the other one.
+    Moments of the groove about the axis of a ball are balanced by forces along the path of κ a²/4R of what
+    friction carries, which are left out of the tractions, as are forces across by which a ball gyrates.
+    """
+    speed = rolling_speed(loaded.bearing, turning)
+    solved = [_on_ring(loaded, found, ring, friction) for ring in RINGS]
+    work, slip_share, moment = np.moveaxis(np.array(solved), -1, 0)
+    of = loaded.bearing
+    radius = 0.5 * of.ball_diameter
+    momentum = 0.4 * of.ball_mass * radius**2 * 2.0 * math.pi * turning.spin
+    gyrating = momentum * 2.0 * math.pi * abs(turning.cage) * np.sin(np.abs(found.axis))
+    held = friction * (loaded.inner_load + loaded.outer_load) * radius
+    gyration = np.where(np.isnan(found.axis), np.nan, np.inf)
+    np.divide(gyrating, held, out=gyration, where=held > 0.0)
+    return BearingFriction(speed * work, slip_share, moment, gyration)
+
+
+def rolling_speed(bearing: BallBearing, turning: Kinematics) -> float:
+    """Speed of a ball on both raceways, m/s."""
+    return math.pi * bearing.ball_diameter * turning.spin
+
+
+def torque_of(heat: Array, turning: Kinematics) -> Array:
+    """Torque that turns one ring against the other, N m, by the heat of all contacts (...), W.
+
+    Balls and cage neither gain nor lose: what turns into heat is what drives the rings.
+    """
+    return heat / (2.0 * math.pi * abs(turning.inner - turning.outer))
+
+
+def _on_ring(loaded: LoadedBearing, found: BearingCreepage, ring: Ring, friction: float) -> Array:
+    """Heat over the length rolled, N, share that slips and moment, N m, of contacts with a ring (m, Z, 3)."""
+    number = RINGS.index(ring)
+    loads = (loaded.inner_load, loaded.outer_load)[number]
+    ball = BallOnRaceway.of(loaded.bearing, ring, friction)
+    known: dict[tuple[float, float], tuple[float, float, float]] = {}
+    rows = np.full((*loads.shape, 3), np.nan)
+    for place in zip(*np.nonzero(np.isfinite(found.sliding[number])), strict=True):
+        load = float(f"{loads[place]:.{DIGITS}g}")
+        spin = round(float(found.spin[number][place]), DIGITS)
+        if (load, spin) not in known:
+            rolled = ball.roll(load, spin)
+            slips = rolled.slip_area / rolled.normal.area
+            known[load, spin] = rolled.work, slips, abs(rolled.moment)
+        rows[place] = known[load, spin]
+    return rows
