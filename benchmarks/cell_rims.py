@@ -302,7 +302,7 @@ def forces_of(gap, cells, width, approaches):
     return np.array(forces)
 
 
-def cost(rounds=7):
+def cost(rounds=21):
     """Print time and iterations of scans of 64 contacts, and of 8 approaches at each, against whole cells."""
     print(
         "| rms / approach | cells in the half-width | approaches | rtol | iterations | to whole | time | us |"

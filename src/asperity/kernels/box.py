@@ -28,6 +28,7 @@ class Box(NamedTuple):
     pitch: int  # columns with the idle ones
     overlap: NDArray  # of the undeformed bodies, m
     pressure: NDArray  # Pa
+    framed: NDArray  # that, between rows of zeros
     residual: NDArray  # K p − overlap, m
     previous: NDArray  # residual one iteration ago, m
     direction: NDArray  # of search, Pa
@@ -51,27 +52,31 @@ def _extent(nx: int, ny: int, lanes: int) -> tuple[int, int]:
 def box_room(nx: int, ny: int, mx: int, my: int, lanes: int) -> int:
     """Room, in numbers, that a box of nx × ny cells needs of which mx × my are convolved."""
     pitch, size = _extent(nx, ny, lanes)
-    return 10 * size + 2 * REACH * pitch + workspace(mx, my, lanes)
+    return 10 * size + 2 * (whole_vectors(pitch, lanes) + REACH * pitch) + workspace(mx, my, lanes)
 
 
 @compiled(**CALLED)
 def empty_box(nx: int, ny: int, room: NDArray) -> Box:
     """Make a box without overlap and pressure, whose fields lie in `room`, as long as `box_room` says."""
     pitch, size = _extent(nx, ny, lanes(room))
-    masked = 9 * size
-    end = 10 * size + 2 * REACH * pitch
+    frame = whole_vectors(pitch, lanes(room))
+    fields = room[2 * (size + frame) :]
+    masked = 7 * size
+    end = 8 * size + 2 * REACH * pitch
     box = Box(
-        nx, ny, pitch, room[:size], room[size : 2 * size], room[2 * size : 3 * size],
-        room[3 * size : 4 * size], room[4 * size : 5 * size], room[5 * size : 6 * size],
-        room[6 * size : 7 * size], room[7 * size : 8 * size], room[8 * size : masked], room[masked:end],
-        room[end:],
+        nx, ny, pitch, room[:size], room[size + frame : 2 * size + frame], room[size : 2 * (size + frame)],
+        fields[:size], fields[size : 2 * size], fields[2 * size : 3 * size], fields[3 * size : 4 * size],
+        fields[4 * size : 5 * size], fields[5 * size : 6 * size], fields[6 * size : masked],
+        fields[masked:end], fields[end:],
     )  # fmt: skip
     for q in range(size):
         box.overlap[q] = -FAR
         box.residual[q] = FAR
     for q in range(size):
         box.pressure[q] = box.direction[q] = box.response[q] = 0.0
-    for q in range(2 * REACH * pitch):  # what is behind the residual and before it
+    for q in range(2 * frame):  # what is before the pressure and behind it
+        box.framed[q if q < frame else size + q] = 0.0
+    for q in range(2 * REACH * pitch):  # and the residual
         box.masked[q if q < REACH * pitch else size + q] = 0.0
     return box
 

@@ -18,7 +18,7 @@ from asperity.kernels.edges import (
 )
 from asperity.kernels.influence import Convolution, convolve, quarter_spectrum
 from asperity.kernels.options import CALLED, INNER, REASSOCIATE, compiled
-from asperity.kernels.rims import Rims, bend, follow, set_rims, set_shares, still_violated, weigh, weigh_step
+from asperity.kernels.rims import Rims, bend, set_rims, set_shares, still_violated, weigh, weigh_step
 
 
 def inverse_stencil(table: NDArray) -> NDArray:
@@ -95,10 +95,6 @@ LEAST, MOST = 0.1, 3.0
 """Bounds of the expected length of a step; an exact inverse as preconditioner would make it one."""
 PATIENCE, OFTEN = 100, 10
 """Iterations after which every tenth is a step of the projected gradient."""
-NEAR, NEARLY = 0.03, 0.2
-"""Error that gaps at rims may have between their computations: of the residual, and of the tolerance."""
-RENEWED = 3
-"""Iterations after which the cells at rims are found anew."""
 CONJUGATE, PRECONDITIONED, STEEPEST = range(3)
 """What a step aims at: each is tried if the one before would do no work."""
 
@@ -295,8 +291,6 @@ def solve(
     cap, at_load, level = task.hardness, task.total >= 0.0, 0.0
     margin = rounding(cap, task.total)
     rho, length, iteration, moving, yielded = 0.0, 1.0, done, True, 0.0
-    # iterations since cells at rims were found; a literal number would be compiled apart
-    followed: int = np.int64(0)  # type: ignore[assignment]
     for q in range(len(b.pressure)):
         yielded += task.compliance * b.pressure[q]
     while iteration < task.max_iterations:
@@ -306,10 +300,6 @@ def solve(
         violated = _free(b.pressure, b, cap, level, tolerance)
         if rims is not None and 0.0 < violated <= rims.number[0]:
             violated = still_violated(b, rims, violated, tolerance, taps[0])
-        if rims is not None and followed > 0 and (not violated or followed >= RENEWED):
-            set_rims(b, rims, level, taps[0])
-            followed = 0
-            continue
         if not violated:
             break
         iteration += 1
@@ -346,11 +336,6 @@ def solve(
             share = 1.0
         _advance(b, share, cap, margin)
         sink_by_share(b, edges, share)
-        if rims is not None:
-            allowed = max(NEAR * np.sqrt(rho / taps[0]), NEARLY * task.rtol * task.largest)
-            follow(b, rims, level, taps[0], allowed)
-            followed += 1
-        yielded += share * further
-    if rims is not None and followed > 0:
         set_rims(b, rims, level, taps[0])
+        yielded += share * further
     return iteration, moving

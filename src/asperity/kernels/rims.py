@@ -144,17 +144,16 @@ def remaining_gap(ratio: float, slant: float) -> tuple[float, float, float]:
 
 
 CHUNK = 64
-"""Cells at rims that are computed in one go."""
-P, X, Y, UNMET, GAP, OWN, BY_P, BY_X, BY_Y, CURVED, BENT, WEIGHT, ALONE, MASKED = range(14)
+"""Cells at rims that are computed in one go, a power of two."""
+P, X, Y, UNMET, GAP, OWN, WEIGHT, ALONE, MASKED = range(9)
 """What is known of a cell at a rim, one number after the other.
 
 Its pressure and the differences beside it, along and across, Pa, and the residual, m, of which all else is
 computed; the gap that is left, m; its difference quotient up to the pressure that the residual asks for, not
-positive, and its derivatives by the first three, m/Pa; halves of the second derivatives by the pressure and
-by the differences, about, m/Pa²; weight of the cell where steps are preconditioned, and what it yields beyond
-that to a residual of its own, Pa/m; residual on the free set, m, before it is weighed.
+positive, m/Pa; weight of the cell where steps are preconditioned, and what it yields beyond that to a
+residual of its own, Pa/m; residual on the free set, m, before it is weighed.
 """
-NUMBERS = 16
+NUMBERS = 9
 
 
 class Rims(NamedTuple):
@@ -166,24 +165,17 @@ class Rims(NamedTuple):
     along: float  # side of a cell over E*, m/Pa
     across: float  # likewise
     number: NDArray  # (1,), number of cells at rims
-    row: NDArray  # in which they lie
     cell: NDArray  # their places in the box
-    above: NDArray  # places of the cells before them, along; idle ones where there are none
-    below: NDArray  # places of those after them
-    gap: NDArray  # that is left in them, and off the residual, m
-    known: NDArray  # (NUMBERS times their number,), what is known of each
-    due: NDArray  # those, by number, of which it has to be computed anew
-    chunk: NDArray  # room for what is computed in one go
+    # what is known of them, chunk after chunk: each of the numbers, of all cells of the chunk
+    known: NDArray
 
 
 def rims(along: float, across: float, count: int, dtype: DTypeLike) -> Rims:
     """Make room for what is known of the rims among so many cells, with sides over E*, m/Pa."""
-    row, cell, above, below, due = np.zeros((5, count), dtype=np.int64)
+    cell: NDArray = np.zeros(count + 1, dtype=np.int64)  # one is written ahead
     number = np.zeros(1, dtype=np.int64)
-    gap: NDArray = np.zeros(count, dtype=dtype)
-    known: NDArray = np.zeros(NUMBERS * count, dtype=dtype)
-    chunk: NDArray = np.zeros(NUMBERS * CHUNK, dtype=dtype)
-    return Rims(along, across, number, row, cell, above, below, gap, known, due, chunk)
+    known: NDArray = np.zeros(NUMBERS * CHUNK * -(-count // CHUNK), dtype=dtype)
+    return Rims(along, across, number, cell, known)
 
 
 @compiled(**INNER)
@@ -192,42 +184,42 @@ def cells_beside(rims: Rims | None) -> int:
     return 0 if rims is None else 1
 
 
-@compiled(**INNER)
-def _place(b: Box, rims: Rims, k: int, i: int, j: int) -> None:
-    """Place a cell of the list in a row and a column of a box."""
-    q = i * b.pitch + j
-    idle = i * b.pitch + b.ny  # no pressure acts there
-    rims.row[k], rims.cell[k] = i, q
-    rims.above[k] = q - b.pitch if i > 0 else idle
-    rims.below[k] = q + b.pitch if i + 1 < b.nx else idle
+@compiled(**INNER, **REASSOCIATE)
+def _mark_rims(b: Box, side: float, level: float) -> None:
+    """Set `z` to one in cells whose pressure is less than the step between their neighbours, else to zero.
+
+    Not in those without pressure that stay apart by more than a rim leaves in any cell. The side of a cell is
+    over E*, m/Pa, the level of residuals in m.
+    """
+    real = b.z.dtype.type
+    zero, one = real(0.0), real(1.0)
+    most, steep, wide, rise, level = (
+        real(END**4),
+        real(side * STEEP),
+        real(side * MOST_LEFT),
+        real(side),
+        real(level),
+    )
+    margin = (len(b.framed) - len(b.z)) // 2
+    above, middle, below = b.framed[margin - b.pitch :], b.framed[margin - 1 :], b.framed[margin + b.pitch :]
+    for q in range(len(b.z)):
+        p = middle[q + 1]
+        x = abs(below[q] - above[q])
+        y = abs(middle[q + 2] - middle[q])
+        far, near = max(x, y), min(x, y)
+        apart = min(rise * far + steep * near, wide * (far + near))
+        at_rim = p * p < most * (x * x + y * y) and (p > zero or b.residual[q] - level < apart)
+        b.z[q] = one if at_rim else zero
 
 
 @compiled(**INNER)
 def _find_rims(b: Box, rims: Rims, level: float) -> int:
-    """List the cells whose pressure is less than the step between their neighbours.
-
-    Not those without pressure that stay apart by more than a rim leaves in any cell.
-    """
+    """List the cells at rims; return how many there are."""
+    _mark_rims(b, max(rims.along, rims.across), level)
     found = 0
-    p = b.pressure
-    side = max(rims.along, rims.across)
-    for i in range(b.nx):
-        first = i * b.pitch
-        above = first - b.pitch if i > 0 else first
-        below = first + b.pitch if i + 1 < b.nx else first
-        before = 1.0 if i > 0 else 0.0
-        after = 1.0 if i + 1 < b.nx else 0.0
-        for j in range(b.ny):
-            q = first + j
-            x = after * p[below + j] - before * p[above + j]
-            y = p[q + 1] - p[q - 1]
-            if p[q] * p[q] < END**4 * (x * x + y * y):
-                far = max(abs(x), abs(y))
-                near = min(abs(x), abs(y))
-                most = side * min(far + STEEP * near, MOST_LEFT * (far + near))
-                if p[q] > 0.0 or b.residual[q] - level < most:
-                    _place(b, rims, found, i, j)
-                    found += 1
+    for q in range(len(b.z)):
+        rims.cell[found] = q
+        found += b.z[q] > 0.0
     return found
 
 
@@ -269,54 +261,31 @@ def _compute(c: NDArray, count: int, x_share: float, y_share: float, stiffness: 
     """Compute what is known of the cells of a chunk: see `set_rims`."""
     for k in range(count):
         p, unmet = c[P * CHUNK + k], c[UNMET * CHUNK + k]
-        scale, step, ratio, _slant, left, slope, along, across = _at_rim(
-            p, c[X * CHUNK + k], c[Y * CHUNK + k], x_share, y_share
-        )
+        found = _at_rim(p, c[X * CHUNK + k], c[Y * CHUNK + k], x_share, y_share)
+        scale, step, ratio, left, slope = found[0], found[1], found[2], found[4], found[5]
         unmet -= scale * left
         # what p - p₀ + stiffness (unmet - gap + gap₀) = 0 gives, the gap straight in the ratio
         steep = min(slope, -LEAST_SLOPE)
-        some = max(ratio, TOGETHER)
-        soft, per_step = step / stiffness, scale / step
+        soft = step / stiffness
         half = 0.5 * scale * steep / soft
         far = half * half - 2.0 * half * ratio + ratio * ratio - unmet / soft
         other = max(half + np.sqrt(max(far, 0.0)), 0.0)
-        own = per_step * steep / max(ratio + other, TOGETHER)
+        own = scale / step * steep / max(ratio + other, TOGETHER)
         weight = 1.0 / (1.0 - SHARED * own * stiffness)
         c[GAP * CHUNK + k] = scale * left
         c[OWN * CHUNK + k] = own
-        c[BY_P * CHUNK + k] = 0.5 * per_step * slope / some
-        c[BY_X * CHUNK + k], c[BY_Y * CHUNK + k] = along, across
-        bent = per_step / step
-        c[BENT * CHUNK + k] = bent
-        c[CURVED * CHUNK + k] = bent * (1.0 - 0.125 * steep / (some * some * some))
         c[WEIGHT * CHUNK + k] = weight
         c[ALONE * CHUNK + k] = stiffness * (1.0 / (1.0 - own * stiffness) - weight * weight)
 
 
-@compiled(**CALLED)
-def _renew(b: Box, rims: Rims, number: int, level: float, stiffness: float) -> None:
-    """Compute what is known of the cells that are due, so many, and take their gap off the residual."""
-    x_share, y_share = 1.0 / rims.along**2, 1.0 / rims.across**2
-    c = rims.chunk
-    p = b.pressure
-    known = rims.known
-    for first in range(0, number, CHUNK):
-        count = min(CHUNK, number - first)
-        for i in range(count):
-            k = rims.due[first + i]
-            q = rims.cell[k]
-            c[P * CHUNK + i] = p[q]
-            c[UNMET * CHUNK + i] = b.residual[q] - level
-            c[X * CHUNK + i] = p[rims.below[k]] - p[rims.above[k]]
-            c[Y * CHUNK + i] = p[q + 1] - p[q - 1]
-        _compute(c, count, x_share, y_share, stiffness)
-        for i in range(count):
-            k = rims.due[first + i]
-            for n in range(MASKED):
-                known[NUMBERS * k + n] = c[n * CHUNK + i]
-            gap = c[GAP * CHUNK + i]
-            rims.gap[k] = gap
-            b.residual[rims.cell[k]] -= gap
+@compiled(**INNER)
+def _look(b: Box, rims: Rims, k: int, c: NDArray, i: int) -> None:
+    """Note the pressure of a cell, by number, and the differences beside it, in a place of a chunk."""
+    q = rims.cell[k] + (len(b.framed) - len(b.z)) // 2
+    p = b.framed
+    c[P * CHUNK + i] = p[q]
+    c[X * CHUNK + i] = p[q + b.pitch] - p[q - b.pitch]
+    c[Y * CHUNK + i] = p[q + 1] - p[q - 1]
 
 
 @compiled(**CALLED)
@@ -331,9 +300,23 @@ def set_rims(b: Box, rims: Rims | None, level: float, stiffness: float) -> None:
         give_back(b, rims)
         number = _find_rims(b, rims, level)
         rims.number[0] = number
-        for k in range(number):
-            rims.due[k] = k
-        _renew(b, rims, number, level, stiffness)
+        x_share, y_share = 1.0 / rims.along**2, 1.0 / rims.across**2
+        for first in range(0, number, CHUNK):
+            count = min(CHUNK, number - first)
+            c = rims.known[NUMBERS * first :]
+            for i in range(count):
+                _look(b, rims, first + i, c, i)
+                c[UNMET * CHUNK + i] = b.residual[rims.cell[first + i]] - level
+            _compute(c, count, x_share, y_share, stiffness)
+            for i in range(count):
+                b.residual[rims.cell[first + i]] -= c[GAP * CHUNK + i]
+
+
+@compiled(**INNER)
+def _place(k: int) -> int:
+    """Place of the first number that is known of a cell, by number."""
+    within = k & (CHUNK - 1)
+    return NUMBERS * (k - within) + within
 
 
 @compiled(**INNER)
@@ -341,16 +324,16 @@ def take_off(b: Box, rims: Rims | None) -> None:
     """Take the gap that is left at rims off the residual."""
     if rims is not None:
         for k in range(rims.number[0]):
-            b.residual[rims.cell[k]] -= rims.gap[k]
+            b.residual[rims.cell[k]] -= rims.known[_place(k) + GAP * CHUNK]
 
 
-@compiled(**INNER)
+@compiled(**INNER, **UNCHECKED)
 def move_rims(b: Box, rims: Rims | None, pitch: int, row: int, column: int) -> None:
     """Place cells at rims in a box that begins in a row and a column of theirs, whose pitch is given."""
     if rims is not None:
         for k in range(rims.number[0]):
-            i = rims.row[k]
-            _place(b, rims, k, i - row, rims.cell[k] - i * pitch - column)
+            i = rims.cell[k] // pitch
+            rims.cell[k] += i * (b.pitch - pitch) - row * b.pitch - column
 
 
 @compiled(**INNER)
@@ -365,38 +348,13 @@ def give_back(b: Box, rims: Rims | None) -> None:
     """Give the gap that was taken off the residual back."""
     if rims is not None:
         for k in range(rims.number[0]):
-            b.residual[rims.cell[k]] += rims.gap[k]
-
-
-@compiled(**CALLED)
-def follow(b: Box, rims: Rims, level: float, stiffness: float, allowed: float) -> None:
-    """Let the gap that is left follow the pressure, straight where an error that is allowed, m, permits."""
-    due = 0
-    p = b.pressure
-    known = rims.known
-    for k in range(rims.number[0]):
-        q = rims.cell[k]
-        o = NUMBERS * k
-        dp = p[q] - known[o + P]
-        dx = p[rims.below[k]] - p[rims.above[k]] - known[o + X]
-        dy = p[q + 1] - p[q - 1] - known[o + Y]
-        error = known[o + CURVED] * dp * dp + known[o + BENT] * (dx * dx + dy * dy)
-        before = rims.gap[k]
-        b.residual[q] += before
-        if error > allowed:
-            rims.due[due] = k
-            due += 1
-        else:
-            gap = known[o + GAP] + known[o + BY_P] * dp + known[o + BY_X] * dx + known[o + BY_Y] * dy
-            rims.gap[k] = gap
-            b.residual[q] -= gap
-    _renew(b, rims, due, level, stiffness)
+            b.residual[rims.cell[k]] += rims.known[_place(k) + GAP * CHUNK]
 
 
 @compiled(**INNER, **UNCHECKED)
 def _stiffness_share(rims: Rims, k: int, stiffness: float) -> float:
     """How far a cell at a rim gives way to a residual, over what a cell among others does."""
-    return 1.0 / (1.0 - rims.known[NUMBERS * k + OWN] * stiffness)
+    return 1.0 / (1.0 - rims.known[_place(k) + OWN * CHUNK] * stiffness)
 
 
 @compiled(**CALLED)
@@ -425,8 +383,8 @@ def weigh(b: Box, rims: Rims) -> None:
     margin = (len(b.masked) - len(b.residual)) // 2
     for k in range(rims.number[0]):
         m = b.masked[margin + rims.cell[k]]
-        rims.known[NUMBERS * k + MASKED] = m
-        b.masked[margin + rims.cell[k]] = m * rims.known[NUMBERS * k + WEIGHT]
+        rims.known[_place(k) + MASKED * CHUNK] = m
+        b.masked[margin + rims.cell[k]] = m * rims.known[_place(k) + WEIGHT * CHUNK]
 
 
 @compiled(**INNER)
@@ -437,11 +395,11 @@ def weigh_step(b: Box, rims: Rims, target: NDArray) -> tuple[float, float, float
     total = 0.0
     for k in range(rims.number[0]):
         q = rims.cell[k]
-        o = NUMBERS * k
+        o = _place(k)
         before = target[q]
-        m = rims.known[o + MASKED]
-        alone = rims.known[o + ALONE] * m
-        target[q] = before * rims.known[o + WEIGHT] + alone
+        m = rims.known[o + MASKED * CHUNK]
+        alone = rims.known[o + ALONE * CHUNK] * m
+        target[q] = before * rims.known[o + WEIGHT * CHUNK] + alone
         gained = target[q] - before
         rho += alone * m
         moved += b.previous[q] * gained
@@ -455,7 +413,7 @@ def bend(b: Box, rims: Rims) -> float:
     stored = 0.0
     for k in range(rims.number[0]):
         step = b.step[rims.cell[k]]
-        stored -= rims.known[NUMBERS * k + OWN] * step * step
+        stored -= rims.known[_place(k) + OWN * CHUNK] * step * step
     return stored
 
 
