@@ -68,7 +68,7 @@ def test_a_device_on_which_nothing_was_ever_run_is_told(monkeypatch):
         (BEARING | {"contact_damping": "20 kN s/m"}, "contact_damping = 20000 N s/m: critical damping"),
         (
             BEARING | {"fault": BEARING["fault"] | {"width": "18 mm"}},
-            "fault.width = 18 mm: balls are 7.9",
+            "fault.width = 18 mm: balls have a diameter of 7.9",
         ),
         (BEARING | {"laws": ["linear"]}, "linear: up to 7 of 9 balls carry nothing, and there it pulls"),
         (BEARING | {"balls": {"roughness": "0.02 nm"}}, "balls.roughness = 0.02 nm"),

@@ -215,7 +215,8 @@ class Surface(MeasuredLine, MeasuredMap):
         "correlation length across over that along the path, at every wavelength of the spectrum, from which "
         "samples and path are then synthesised; inf: the same all across",
         "nothing is known beside the line",
-        '0.001 to 1000000.0: beyond that it is the same all across: write "inf"',
+        "0.1 to 1e6: less is no roughness that rolling leaves; beyond that it is the same all across: write "
+        '"inf"',
         goes_with="spectrum",
     )
     level: float = key(LEVEL, "+0 dB", "level added to the spectrum", ADDED_LEVEL, goes_with="spectrum")

@@ -1,8 +1,12 @@
 """Sizes that are legal but hardly meant: masses, loads, dampers and waves in a wrong unit."""
 
 import math
+from collections.abc import Mapping
+
+import numpy as np
 
 from asperity.case.ball_bearing import BearingUnderLoad
+from asperity.case.beam import BeamKeys
 from asperity.case.scene import Case
 from asperity.case.sideways import SidewaysKeys
 from asperity.contact.batched import UNTRIED, find_device
@@ -11,6 +15,7 @@ from asperity.errors import OutOfRangeWarning
 from asperity.laws import spec_of
 from asperity.reference.materials import material
 from asperity.rolling.steps import warn_if_coarse
+from asperity.scenarios.usual import OF_ANYTHING, OF_BEARINGS, OF_TRAINS, UNIT, unusual
 from asperity.speeds import slowest
 from asperity.structures.body import GRAVITY
 from asperity.structures.track import Track
@@ -22,8 +27,32 @@ HOLLOW = 0.01
 """Share of the mass of a solid ball of the same radius that nothing that rolls falls short of."""
 LIFTED = 0.5
 """Share of its weight below which a load means that something carries the body."""
-OVERDAMPED = 10.0
-"""Times critical damping beyond which a contact is all damper."""
+UNDAMPED, OVERDAMPED = 1e-4, 2.0
+"""Times critical damping below which a damper damps nothing, and above which there is no spring beside it."""
+LIGHT_ABOVE = 0.01
+"""Share of the mass on a contact that a mass above it has at least."""
+OF_A_BAR = 100.0
+"""Times the moment of inertia of a bar, and its share, between which frames and carriages have theirs."""
+LONG_RUN_IN = 20.0
+"""Records that are as long as what is rolled before one at most."""
+SHALLOW = 0.05
+"""Share of the approach at rest below which a dip is none."""
+STRAIGHT = 500.0
+"""Times the radius of what rolls from which a curved path or section is as good as straight."""
+FINE_STEP = 0.02
+"""Share of the time step that would be chosen below which a given one costs without a gain."""
+MANY_WINDOWS = 100.0
+"""Windows that are longer than any sample has to be."""
+SLENDER = 2.0, 1000.0
+"""Lengths in heights between which beams bend as beams, and are no wires."""
+MODES_WANTED = 200.0
+"""Times the highest frequency of the spectra above which no mode of a beam is felt."""
+RIGID_SPRING, LOOSE_SPRING = 300.0, 0.003
+"""Times the stiffness of a contact of a bearing between which springs hold a ring, and are not rigid."""
+TURNING_LOAD = 10.0
+"""Times the loads that stand still which no load that turns with the shaft exceeds."""
+HIGHEST_BURR = 0.1
+"""Diameters of a ball that burrs and the rounding of edges do not reach."""
 SMOOTHEST = 1e-10
 """Rms height, m, that no surface falls short of: polished glass and silicon have as much."""
 LOWEST_HEARD = 10.0
@@ -39,15 +68,14 @@ BENDS = 20.0
 SHEARS, TWISTS = (500.0, 6000.0), (100.0, 4000.0)
 """m/s, between which waves of shear and of twist run along rails: about 2000 and 800."""
 SECTION_OF_A_RAIL = "bending_stiffness", "shear_stiffness", "rotary_inertia"
-WIDEST_RAIL = 0.2
-"""m, more than any rail's radius of gyration."""
+GYRATION = 0.005, 0.2
+"""m, between which radii of gyration of rails lie: they are 20 mm to 70 mm."""
 OF_VERTICAL = 0.01, 10.0
 """Times the vertical stiffness between which the lateral one of a layer lies, and that against roll."""
-LIGHTLY_LOADED = 0.1
+LIGHTLY_LOADED = 0.2
 """Share of the weight of the shaft that a bearing carries at least."""
 HEAVIEST = 1e5
 """Times the mass of all balls that no ring weighs with all that moves with it."""
-UNIT = "Is the unit right?"
 
 
 def doubt_device() -> None:
@@ -64,12 +92,14 @@ def doubt_sizes(case: Case, over: object) -> None:
     name = case.ROLLING
     surface = case.surface
     mass, load = rolling.contact_mass, rolling.contact_load
+    carried = mass + sum(rolling.masses or ()) * len(rolling.positions) / len(rolling.offsets)
     solid = 4.0 / 3.0 * math.pi * rolling.radius**3 * rolling.material.density
     if mass < HOLLOW * solid:
         _warn(f"{name}.mass", mass, "kg", f"a solid ball of its radius and material has {rounded(solid)} kg")
-    if load < LIFTED * GRAVITY * mass:
-        weight = in_newtons(GRAVITY * mass)
-        _warn(f"{name}.load", load, "N", f"{name}.mass alone weighs {weight}, so that something lifts it")
+    if load < LIFTED * GRAVITY * carried:
+        told = f"what rests on a contact weighs {in_newtons(GRAVITY * carried)}, so that something lifts it"
+        _warn(f"{name}.load", load, "N", told)
+    _doubt_above(case)
     _doubt_damping("contact.damping", case.contact.damping, case.smooth_contact, load, mass)
     if surface.rms is not None and surface.rms < SMOOTHEST:
         _warn("surface.rms", surface.rms, "m", "the smoothest surfaces that are made have 0.1 nm", "nm")
@@ -84,7 +114,14 @@ def doubt_sizes(case: Case, over: object) -> None:
             at = between(*map(rounded, passed))
             told = f"it is passed at {at} Hz, and spectra go from some {LOWEST_HEARD:g} Hz to "
             _warn("surface.corrugation_wavelength", wave, "m", f"{told}{highest:g} Hz", "mm")
+    _doubt_lengths(case)
+    _doubt_run_in(case.settling, case.rolled_time)
+    _doubt_time_step(case)
+    _doubt_usual(case, OF_ANYTHING)
+    if isinstance(case.rolled_over, BeamKeys):
+        _doubt_beam(case, case.rolled_over)
     if isinstance(over, Track):
+        _doubt_usual(case, OF_TRAINS, **{name: "wheel"})
         _doubt_layers(over, case.over_name, load)
         _doubt_rail(over, case.over_name, over.mass_per_length)
         if over.sleeper_bending_stiffness is not None:
@@ -93,6 +130,113 @@ def doubt_sizes(case: Case, over: object) -> None:
                 f"{case.over_name}.sleeper_bending_stiffness", over.sleeper_bending_stiffness, mass
             )
         _doubt_sideways(case, over)
+
+
+def _doubt_usual(case: Case | BearingUnderLoad, usual: Mapping[str, str], **called: str) -> None:
+    """Warn of sizes that are given beyond those that machines of a kind have."""
+    for told in unusual(case, usual, **called):
+        OutOfRangeWarning.warn(told)
+
+
+def _doubt_lengths(case: Case) -> None:
+    """Warn of lengths that do not fit to what rolls, or to how far it rolls."""
+    first, last = case.rolled_range
+    path = f"{rounded(last - first)} m are rolled"
+    sample, window = case.contact.sample_length, case.contact.window
+    if sample is not None and sample > max(MANY_WINDOWS * window, last - first):
+        told = f"{path}, and the window is {rounded(1e3 * window)} mm wide"
+        _warn("contact.sample_length", sample, "m", told, "mm")
+    deep, dip = case.surface.joint_depth, case.surface.joint_length
+    if deep is not None and dip > 2.0 * (last - first):
+        _warn("surface.joint_length", dip, "m", f"{path}, so that there is no more of it than a slope", "mm")
+    body, name = case.rolling, case.ROLLING
+    round_body = f"a body of a radius of {rounded(1e3 * body.radius)} mm"
+    for key in ("raceway_radius", "transverse_radius", "groove_radius"):
+        bent = getattr(body, key)
+        if bent is not None and STRAIGHT * body.radius < abs(bent) < math.inf:
+            _warn(f"{name}.{key}", bent, "m", f"beside {round_body} that is as good as straight", "mm")
+    contact = case.smooth_contact
+    approach = contact.approach(body.contact_load)
+    if deep is not None and deep < SHALLOW * approach:
+        told = f"at rest bodies approach by {rounded(1e6 * approach)} µm, beside which that is none"
+        _warn("surface.joint_depth", deep, "m", told, "um")
+    touching = 2.0 * contact.semi_axes(approach)[0]
+    chords = {"flat_length": body.flat_length}
+    chords["flat_depth"] = body.flat_depth and math.sqrt(8.0 * body.radius * body.flat_depth)
+    for key, chord in chords.items():
+        if chord is not None and chord < touching:
+            flat, patch = (f"{rounded(1e3 * each)} mm long" for each in (chord, touching))
+            told = f"the flat is {flat}, the contact at rest {patch}"
+            _warn(f"{name}.{key}", getattr(body, key), "m", told, "mm")
+    for section, key in ((name, "positions"), ("noise", "axle_positions")):
+        places = getattr(getattr(case, section, None), key, None) or ()
+        if (apart := float(np.diff(sorted(places)).min(initial=math.inf))) < body.radius:
+            _warn(f"{section}.{key}", apart, "m", f"so near, two of {round_body} overlap", "mm")
+    if body.distance is not None and body.distance < body.radius:
+        _warn(f"{name}.distance", body.distance, "m", f"so near, two of {round_body} overlap", "mm")
+    for section in ("surface", name):
+        beside = getattr(getattr(case, section), "line_distance", None)
+        if beside is not None and beside > window:
+            told = f"the window is {rounded(1e3 * window)} mm wide, and holds no line but the middle one"
+            _warn(f"{section}.line_distance", beside, "m", told, "mm")
+
+
+def _doubt_above(case: Case) -> None:
+    """Warn of masses, springs and dampers above the contacts that do not fit to each other."""
+    body, name = case.rolling, case.ROLLING
+    lightest = min(body.masses or (math.inf,))
+    if lightest < LIGHT_ABOVE * body.contact_mass:
+        told = f"what it rests on has {rounded(body.contact_mass)} kg on each contact"
+        _warn(f"{name}.masses", lightest, "kg", told)
+    if not body.masses:
+        return
+    if body.inertia is not None and body.distance is not None:
+        bar = sum(body.masses) * body.distance**2 / 12.0
+        if not 1.0 / OF_A_BAR <= body.inertia / bar <= OF_A_BAR:
+            told = f"a bar of its mass, as long as its contacts are apart, has {rounded(bar)} kg m^2"
+            _warn(f"{name}.inertia", body.inertia, "kg m^2", told)
+    contact = case.smooth_contact
+    hard = contact.tangent_stiffness(contact.approach(body.contact_load))
+    for number, spring in enumerate(body.springs or ()):
+        mass = body.masses[min(number, len(body.masses) - 1)]
+        if (yields := GRAVITY * mass / spring) > body.radius:
+            told = f"the mass above it presses it down by {rounded(yields)} m"
+            _warn(f"{name}.springs", spring, "N/m", told, "MN/m")
+        elif spring > 0.5 * hard and body.type != "carriage":
+            told = f"the contact at rest has {written(hard, 'N/m', 'MN/m', exactly=False)}"
+            _warn(f"{name}.springs", spring, "N/m", told, "MN/m")
+        critical = 2.0 * math.sqrt(spring * mass)
+        damper = body.dampers[number] if body.dampers else 0.0
+        if damper and not UNDAMPED * critical <= damper <= OVERDAMPED * critical:
+            told = f"critical damping of the spring beside it is {rounded(critical)} N s/m"
+            _warn(f"{name}.dampers", damper, "N s/m", told)
+
+
+def _doubt_run_in(settling: float | None, recorded: float) -> None:
+    """Warn of a run-in, s, that is long beside the record, s."""
+    if settling is not None and settling > LONG_RUN_IN * recorded:
+        _warn("settling", settling, "s", f"the record is {rounded(recorded)} s long")
+
+
+def _doubt_time_step(case: Case) -> None:
+    """Warn of a given time step that is far finer than the one that would be taken."""
+    step = case.numerics.time_step
+    if step is not None and step < FINE_STEP * case.chosen_step:
+        chosen = written(case.chosen_step, "s", "us", exactly=False)
+        told = f"without it {chosen} would be taken, in a small part of the time"
+        _warn("numerics.time_step", step, "s", told, "us")
+
+
+def _doubt_beam(case: Case, beam: BeamKeys) -> None:
+    """Warn of a beam that is none, and of modes that nothing excites."""
+    slender = beam.length / beam.height
+    if not SLENDER[0] <= slender <= SLENDER[1]:
+        told = f"it is {rounded(1e3 * beam.height)} mm high, and beams are {SLENDER[0]:g} to {SLENDER[1]:g} "
+        _warn(f"{case.over_name}.length", beam.length, "m", f"{told}times as long")
+    highest = case.numerics.highest_frequency
+    if beam.modes_up_to is not None and beam.modes_up_to > MODES_WANTED * highest:
+        told = f"spectra go up to {highest:g} Hz, and modes far above it move nothing"
+        _warn(f"{case.over_name}.modes_up_to", beam.modes_up_to, "Hz", told)
 
 
 def _doubt_layers(track: Track, section: str, load: float) -> None:
@@ -125,7 +269,7 @@ def _doubt_rail(keys: Track | SidewaysKeys, section: str, mass: float) -> None:
         _doubt_bending(f"{section}.bending_stiffness", bending, mass)
     if shear is not None:
         _doubt_waves(f"{section}.shear_stiffness", shear, "N", mass, "shear", SHEARS)
-    if rotary is not None and (radius := math.sqrt(rotary / mass)) > WIDEST_RAIL:
+    if rotary is not None and not GYRATION[0] <= (radius := math.sqrt(rotary / mass)) <= GYRATION[1]:
         told = f"its radius of gyration would be {rounded(1e3 * radius)} mm"
         _warn(f"{section}.rotary_inertia", rotary, "kg m", told)
 
@@ -190,6 +334,11 @@ def doubt_bearing(case: BearingUnderLoad) -> None:
             told = f"one of its {of.balls} balls has {rounded(1e3 * of.ball_mass)} g"
             _warn(f"{name}.mass", ring.mass, "kg", told)
     contact, heaviest = case.contacts[1]
+    _doubt_usual(case, OF_ANYTHING | OF_BEARINGS)
+    _doubt_run_in(case.settling, case.duration)
+    _doubt_springs(case, contact.tangent_stiffness(contact.approach(heaviest)))
+    if case.rotating > TURNING_LOAD * load:
+        _warn("rotating", case.rotating, "N", f"all that stands still is {in_newtons(load)}")
     _doubt_damping("contact_damping", case.contact_damping, contact, heaviest, of.ball_mass)
     idle = of.balls - float(case.static.touching.min())
     for law in (law for law in case.laws if spec_of(law).may_pull and idle):
@@ -198,9 +347,11 @@ def doubt_bearing(case: BearingUnderLoad) -> None:
             "together. Take a law that lets go, or load the bearing along its axis."
         )
     for name, keys in case.faults.items():
-        if (fault := keys.fault) is not None and fault.width > of.ball_diameter:
-            told = f"{of.ELEMENT}s are {rounded(1e3 * of.ball_diameter)} mm wide"
-            _warn(f"{name}.width", fault.width, "m", told, "mm")
+        for key, most in (("width", 1.0), ("depth", 0.5), ("edge", HIGHEST_BURR), ("burr", HIGHEST_BURR)):
+            size = keys.fault and getattr(keys.fault, key)
+            if size and size > most * of.ball_diameter:
+                told = f"{of.ELEMENT}s have a diameter of {rounded(1e3 * of.ball_diameter)} mm"
+                _warn(f"{name}.{key}", size, "m", told, "mm")
     for name in map(case.called, ("inner_raceway", "outer_raceway", "balls")):
         keys = getattr(case, name)
         if keys.roughness is not None and keys.roughness < SMOOTHEST:
@@ -214,10 +365,20 @@ def doubt_bearing(case: BearingUnderLoad) -> None:
     warn_if_coarse(case.step, [(what, resonance, 0.99 * case.resolving(resonance) / resonance)])
 
 
+def _doubt_springs(case: BearingUnderLoad, contact: float) -> None:
+    """Warn of springs that hold a ring as none does, beside the stiffness of a contact, N/m."""
+    for name, ring in (("shaft", case.shaft), ("housing", case.housing)):
+        for key in ("radial_stiffness", "axial_stiffness"):
+            share = getattr(ring, key) / contact
+            if share and not LOOSE_SPRING <= share <= RIGID_SPRING:
+                told = f"a contact of the bearing has {written(contact, 'N/m', 'MN/m', exactly=False)}"
+                _warn(f"{name}.{key}", getattr(ring, key), "N/m", told, "MN/m")
+
+
 def _doubt_damping(key: str, damping: float, contact: Hertz, load: float, mass: float) -> None:
     """Warn of a damper beside a contact under a load, N, of a mass, kg, that leaves nothing to its spring."""
     critical = 2.0 * math.sqrt(contact.tangent_stiffness(contact.approach(load)) * mass)
-    if damping > OVERDAMPED * critical:
+    if damping and not UNDAMPED * critical <= damping <= OVERDAMPED * critical:
         _warn(key, damping, "N s/m", f"critical damping of this contact is {rounded(critical)} N s/m")
 
 

@@ -104,12 +104,12 @@ def prepare_bearing(case: BearingUnderLoad, source: str = "case") -> PreparedBea
             seed = SEEDS * case.seed + number
             try:
                 made.append(surface_on(contact, load, radius, keys.texture(), faults, seed=seed))
-                doubt_surface(made[-1], contact.approach(load))
+                doubt_surface(made[-1], contact.approach(load), of.ELEMENT)
             except InputError as error:
                 errors.append(_by_key(case, name, keys, error))
             apart = 2.0 * np.pi * radius / of.balls
             for fault in faults if name != "ball" else ():
-                doubt_fault(fault, apart, NAMES[name])
+                doubt_fault(fault, apart, NAMES[name], of.ELEMENT)
     refuse(errors, source)
     return PreparedBearing(case, (made[0], made[1]), tuple(made[2:]), tuple(caught))
 

@@ -13,11 +13,11 @@ from asperity.written_numbers import rounded
 REMEDY = 'Is the unit right? Waviness is written as "0.5 um", roughness as "20 nm".'
 
 
-def doubt_surface(surface: Raceway, approach: float) -> None:
+def doubt_surface(surface: Raceway, approach: float, rolls: str) -> None:
     """Hold what is on a raceway or a ball all around to the approach of its smooth contact, m.
 
     Waves that lift a ball out of the states of its laws are warned of. What goes round with one wave moves
-    the ring alone.
+    the ring alone. What `rolls` is a ball or a roller.
 
     Raises
     ------
@@ -42,17 +42,17 @@ def doubt_surface(surface: Raceway, approach: float) -> None:
     if highest > held:
         OutOfRangeWarning.warn(
             f"Waves all around of ± {rounded(highest * 1e6)} µm are {rounded(highest / approach)} times "
-            f"the approach of the most loaded ball, {rounded(approach * 1e6)} µm: balls lose contact and "
-            f"come down harder than the laws cover, which is ± {rounded(held * 1e6)} µm. {REMEDY}"
+            f"the approach of the most loaded {rolls}, {rounded(approach * 1e6)} µm: {rolls}s lose contact "
+            f"and come down harder than the laws cover, which is ± {rounded(held * 1e6)} µm. {REMEDY}"
         )
 
 
-def doubt_fault(fault: Fault, apart: float, part: str) -> None:
-    """Warn of a fault that is as long as the balls are apart on a raceway, m, which `part` names."""
+def doubt_fault(fault: Fault, apart: float, part: str, rolls: str) -> None:
+    """Warn of a fault that is as long as what `rolls` is apart on a raceway, m, which `part` names."""
     length = fault.size[0]
     if length > apart:
         OutOfRangeWarning.warn(
-            f"fault.length: the {fault.shape} on the {part} is {length * 1e3:.4g} mm long, the balls are "
-            f"{apart * 1e3:.4g} mm apart: two or more are in it at once, and no ball strikes it alone. "
+            f"fault.length: the {fault.shape} on the {part} is {length * 1e3:.4g} mm long, the {rolls}s are "
+            f"{apart * 1e3:.4g} mm apart: two or more are in it at once, and no {rolls} strikes it alone. "
             "Is the unit right?"
         )

@@ -243,6 +243,8 @@ def _made_blocks(first: int, count: int, z: bytes) -> tuple[list[_Block], int]:
         distance = SAME_COHERENCE ** (each + 0.5) * near
         for side in tiling.touching(distance[0], distance[-1]):
             lines = tiling.held(side, distance)
+            if lines.start == lines.stop:  # lines far apart step over tiles
+                continue
             basis = _across_basis(distance[lines])
             share = tiling.weight(side, distance[lines])
             blocks.append(_Block(waves, side, lines, basis * share, share * (weight @ basis.real)))

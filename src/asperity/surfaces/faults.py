@@ -21,6 +21,7 @@ PARTS = 6
 """Parts of a cell along and across for the mean depth of one that an edge crosses."""
 LENGTH = Quantity("m", above=0)
 MAP = File(held=(HeightMap,), content="a height map")
+_BURRS = "1 um to 10 mm: burrs lie between"
 _SIZE = "1 um to 1 m: faults lie between"
 _DEPTH = "1 nm to 100 mm: faults lie between"
 _TURN = "-360 deg to 360 deg: raceways end there"
@@ -93,7 +94,7 @@ class Fault:
     burr: float = parameter(
         Quantity("m", at_least=0), "0 um", "height of the burr around a pit or spall", _DEPTH, default=0.0
     )
-    burr_width: float = parameter(LENGTH, "50 um", "width of that burr", _SIZE, default=50e-6)
+    burr_width: float = parameter(LENGTH, "50 um", "width of that burr", _BURRS, default=50e-6)
     rim: float = parameter(_RIM, 1.0, "volume of a dent's rim over the dent's", default=1.0)
     rim_width: float = parameter(
         Number(above=0, at_most=10), 1.0, "width of the rim over half a dent's", default=1.0
