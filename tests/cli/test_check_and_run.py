@@ -266,3 +266,31 @@ def test_results_that_the_disk_cannot_hold_are_refused_before_work(monkeypatch, 
     assert "the disk is full (" in message
     assert "are needed, 1 KiB are free)" in message
     assert not Path("out").exists()
+
+
+LONG_RECORDS = {
+    "wheel": (
+        "kind = 'wheel-on-rail'\nspeed = '50 m/s'\nduration = '400 s'\nlaws = ['linear']\n"
+        "[surface]\nspectrum = 'iso3095'\n[contact]\nspacing = '1 mm'\nwindow = '21 mm'\n"
+        "[numerics]\ntime_step = '20 us'",
+        "20 million time steps over 420 million points of a path. It takes 3 min of processor time or more, "
+        "and its results up to 7.45 GiB of memory.",
+    ),
+    "bearing": (
+        "kind = 'ball-bearing'\nspeed = '1800 1/min'\nradial = '100 N'\nlaws = ['hertz']\n"
+        "duration = '20 s'\nsettling = '0.1 s'\nsampling_rate = '50 kHz'\ntime_step = '2 us'\n"
+        "[bearing]\nname = '6205'",
+        "10.1 million time steps. It takes 3 min of processor time or more, and its results up to 420 MiB",
+    ),
+}
+"""20 015 000 steps, 20 015 m and 21 points across, 50 numbers a step; 20.1 s of 2 µs, 9 balls, 55 a sample."""
+
+
+@pytest.mark.parametrize("name", LONG_RECORDS)
+def test_what_a_long_record_takes_is_told_before_it_is_laid_out(name, monkeypatch):
+    text, told = LONG_RECORDS[name]
+    Path("long.toml").write_text(text)
+    monkeypatch.setattr("asperity.files.free_space", lambda path: 2**40)
+    monkeypatch.setattr("asperity.running.prepare_case", None)
+    for command in ("check", "run"):
+        assert f"A long case: {told}" in words_of(call(command, "long.toml", "-o", "out", code=3).stderr)

@@ -291,6 +291,21 @@ class AnyCase(Section):
         raise NotImplementedError
 
     @property
+    def steps_taken(self) -> int:
+        """Time steps of each law, those before the record among them."""
+        raise NotImplementedError
+
+    @property
+    def forces_evaluated(self) -> int:
+        """How many forces its laws evaluate, of all contacts in all time steps."""
+        raise NotImplementedError
+
+    @property
+    def points_laid(self) -> float:
+        """Points of texture that are laid out before anything is computed, at most; none by default."""
+        return 0.0
+
+    @property
     def recorded_step(self) -> float:
         """Time between two samples of its records, s."""
         raise NotImplementedError

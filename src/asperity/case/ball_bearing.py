@@ -354,6 +354,16 @@ class BearingUnderLoad(AnyCase):
         each = 5 * self.bearing.bearing.balls + 10
         return len(self.laws) * each * self.duration * self.sampling_rate
 
+    @property
+    def steps_taken(self) -> int:
+        """Time steps of each law, those before the record among them."""
+        return round((self.settling + self.duration) / self.step)
+
+    @property
+    def forces_evaluated(self) -> int:
+        """How many forces its laws evaluate, of all contacts in all time steps."""
+        return self.steps_taken * self.bearing.bearing.balls * len(self.laws)
+
     def _problems_of_films(self) -> Iterator[InputError]:
         """Laws with which a film may be in series."""
         for number, law in enumerate(self.laws if self.films else (), 1):

@@ -246,6 +246,22 @@ class Case(AnyCase):
         return 50.0 * len(self.laws) * self.rolled_time / self.time_step
 
     @property
+    def steps_taken(self) -> int:
+        """Time steps of each law, those before the record among them."""
+        return round((self.settled_time + self.rolled_time) / self.time_step)
+
+    @property
+    def forces_evaluated(self) -> int:
+        """How many forces its laws evaluate, of all contacts in all time steps."""
+        return self.steps_taken * len(self.rolling.offsets) * len(self.laws)
+
+    @property
+    def points_laid(self) -> float:
+        """Points of texture that are laid out before anything is computed, at most: those of the path."""
+        length = self.rolled_in(self.rolled_time) - self.rolled_in(-self.settled_time)
+        return length * self.contact.window / self.contact.spacing**2
+
+    @property
     def room(self) -> tuple[float, float] | None:
         """Positions of the run, m, at which the rearmost contact begins and the foremost is at the end."""
         extent = self.rolled_over.extent

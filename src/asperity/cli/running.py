@@ -24,6 +24,7 @@ from asperity.schema import bearing, provenance, rolling
 from asperity.store import Store, content_key
 from asperity.terminal import detail, remark, say, say_files, say_table
 from asperity.threads import THREADS, processors
+from asperity.written_numbers import rounded
 
 if TYPE_CHECKING:
     from xarray import DataArray, DataTree
@@ -35,6 +36,7 @@ CONVERGENCE, EFFECTS = "convergence", "effects"
 """Groups of a result that are computed if they are asked for."""
 READING = "reading and laying out the case"
 ANNOUNCED = 1_000_000  # contact solutions of a scan that is announced before it starts
+LONG_RECORD = 30.0  # s of processor time, at least, of a case that is announced before it is laid out
 
 
 def run_case(
@@ -111,6 +113,7 @@ def prepared_case(case: AnyCase, source: str) -> ReadyCase:
     """Read and lay out all that a case needs, and say so if that takes long."""
     from asperity.running import prepare_case
 
+    announce_size(case)
     with progress_bar() as progress:
         progress(0, 1, READING)
         prepared = prepare_case(case, source)
@@ -179,6 +182,21 @@ def _write(tree: DataTree, directory: Path, *, report: bool) -> None:
 
 
 # --- what is said of a run
+
+
+def announce_size(case: AnyCase) -> None:
+    """Before a case is laid out that takes long, say what it takes at least."""
+    from asperity.scenarios import run_time
+
+    seconds = run_time.STEP * case.forces_evaluated + run_time.CELL * case.points_laid
+    if seconds > LONG_RECORD:
+        steps, points = (f"{rounded(count / 1e6)} million" for count in (case.steps_taken, case.points_laid))
+        path = f" over {points} points of a path" * bool(case.points_laid)
+        say(
+            f"A long case: {steps} time steps{path}. It takes {duration(seconds)} of processor "
+            f"time or more, and its results up to {files.amount(8.0 * case.numbers_written)} of memory.",
+            err=True,
+        )
 
 
 def announce_scan(prepared: ReadyCase) -> None:

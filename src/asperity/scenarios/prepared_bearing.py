@@ -161,7 +161,7 @@ def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], preparin
     case = prepared.case
     turning = prepared.case.kinematics
     found = prepared.case.static
-    steps = round((case.settling + case.duration) / case.step)
+    steps = case.steps_taken
     textured = sum(bool(getattr(case, case.called(key)).given()) for key in ON)
     runs = len(case.laws) + textured + (textured > 0)
     solutions = {}

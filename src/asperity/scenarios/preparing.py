@@ -344,7 +344,7 @@ def expect(prepared: PreparedCase, progress: Progress) -> Work:
             compiling.compile_kernels(progress, prepared.shape.cells)
             trial = try_contacts(prepared, progress)
     scans = scan_sizes(prepared)
-    steps = round((case.settled_time + case.rolled_time) / case.time_step)
+    steps = case.steps_taken
     solutions = {f"scan for the {name}": scan.solutions for name, scan in scans.items()}
     if case.contact.running_in is not None:
         solutions["running in"] = running_in.running_in_solutions(prepared)
