@@ -283,7 +283,7 @@ LONG_RECORDS = {
         "10.1 million time steps. It takes 3 min of processor time or more, and its results up to 420 MiB",
     ),
 }
-"""20 015 000 steps, 20 015 m and 21 points across, 50 numbers a step; 20.1 s of 2 µs, 9 balls, 55 a sample."""
+"""20 015 000 steps, 20 015 m, 21 points across, 50 numbers a step; 20.1 s of 2 µs, 9 balls, 55 a sample."""
 
 
 @pytest.mark.parametrize("name", LONG_RECORDS)

@@ -54,6 +54,14 @@ def test_it_writes_the_case_a_table_and_a_page(rates):
     assert "Correlations" in page
 
 
+def test_what_is_doubtful_of_the_case_is_said_before_it_is_fitted(rates):
+    Path("track.toml").write_text(f"{CASE}[noise]\nreceiver_height = '1.2 mm'\n")
+    doubt = "noise.receiver_height = 0.0012 m: receivers stand at 0.1 m to 30 m. Is the unit right?"
+    said = call(*FIT, "--json")
+    assert f"Warning: {doubt}" in said.stderr
+    assert {"grade": "warning", "message": doubt} in json.loads(said.stdout)["warnings"]
+
+
 def test_the_same_fit_replaces_its_own_files_and_no_others(rates):
     call(*FIT, "-o", "out")
     said = call(*FIT, "-o", "out", "-q")

@@ -19,6 +19,7 @@ from asperity.optimising import running
 from asperity.optimising.allocation import rms_of
 from asperity.written_numbers import signed
 from browser import assert_accessible, pages_of
+from command_line import words_of
 from small_cases import COARSE, WHEEL
 
 pytestmark = pytest.mark.usefixtures("cache_of_module")
@@ -26,7 +27,7 @@ CASE = COARSE | {
     "start": "0.2 m",
     "duration": "0.1 s",
     "surface": {"rms": "0.05 um", "longest": "2 mm", "shortest": "0.1 mm"},
-    "contact": COARSE["contact"] | {"samples": 1},
+    "contact": COARSE["contact"] | {"samples": 1, "friction": 0.001},
 }
 
 
@@ -106,6 +107,15 @@ def again(folder, tmp_path, monkeypatch):
     shutil.copytree(folder[0].parent, tmp_path, dirs_exist_ok=True)
     monkeypatch.setattr(optimising, "searched", lambda *_: folder[2])
     return lambda *words: optimised(tmp_path, *words)
+
+
+def test_what_is_doubtful_of_its_case_is_said(again, folder):
+    told = {each["message"] for each in folder[1]["warnings"]}
+    met = json.loads(asperity.open_result(folder[0] / "before").attrs["warnings"])
+    assert any("contact.friction = 0.001: solids, dry or wet, have 0.02 to 1.5." in each for each in told)
+    assert told == {each["message"] for each in met}
+    said = words_of(again("--overwrite").stderr)
+    assert all(words_of(each) in said for each in told)
 
 
 @pytest.mark.parametrize("written", ["texture.csv", "case.toml"])

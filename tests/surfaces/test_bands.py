@@ -70,6 +70,13 @@ def test_lines_share_what_the_spectrum_across_says(lateral):
         assert_allclose(np.mean(cross.real, axis=0)[1:] / power, z * k1(z), atol=0.12)
 
 
+def test_lines_that_step_over_tiles_have_nothing_in_common():
+    """Between lines 500 wavelengths of the spectrum across apart lie tiles without a line."""
+    strip = strip_from_bands((4000, 5), (MM, 0.25), [0.005], [0.0], lateral=0.1, seed=8).heights
+    assert_allclose(np.sqrt(np.mean(strip**2)), UM, rtol=0.05)
+    assert_allclose(np.corrcoef(strip.T), np.eye(5), atol=0.12)
+
+
 def test_strip_is_isotropic_where_the_line_density_falls_with_the_square():
     wavelengths = 10.0 ** (-np.arange(5, 24) / 10)  # 0.32 m to 5 mm
     levels = -np.arange(wavelengths.size) * 1.0  # density ∝ ν^-2

@@ -14,6 +14,7 @@ from asperity.case.cases import read_case
 from asperity.case.form import content, file_digest
 from asperity.case.toml import toml_text
 from asperity.cli.commands import mark_of, refuse_other_case, taken_folder
+from asperity.cli.running import doubted
 from asperity.fitting.fitted import Fitted
 from asperity.fitting.running import chosen_free, fitted, measured_for
 from asperity.observables import observable
@@ -77,6 +78,7 @@ def fit_case(
     written = {name: folder / file for name, file in {**FILES, **tables}.items()}
     if not overwrite:
         _refuse_other(asked, written)
+    doubts = doubted(case, path.name)
     with files.alone_in(folder), progress_bar() as progress, one_thread_in_linear_algebra():
         found = fitted(case, data_of_case, chosen, progress, starts)
         with files.together(folder, last=CASE) as new:
@@ -94,7 +96,7 @@ def fit_case(
     _say(found)
     written = {what: file for what, file in written.items() if file.exists()}
     say_files(written)
-    return {"case": path.resolve(), **_document(found), "files": written}
+    return {"case": path.resolve(), **_document(found), "warnings": doubts, "files": written}
 
 
 def _refuse_other(asked: str, written: dict[str, Path]) -> None:

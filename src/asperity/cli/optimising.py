@@ -11,6 +11,7 @@ from asperity.case import any_case, toml
 from asperity.case.any_case import function_named
 from asperity.case.form import content, file_digest
 from asperity.cli.commands import mark_of, refuse_other_case
+from asperity.cli.running import warn, warnings_of
 from asperity.optimising.definition import load_aim
 from asperity.optimising.kinds import optimisation_of, searched
 from asperity.progress import progress_bar
@@ -63,6 +64,7 @@ def run_optimisation(
             text = toml.toml_text({"kind": found.case.kind, **keys})
             files.write_bytes(new / FILES["case"], f"{mark_of('texture', asked, text)}{text}".encode())
             written = {what: path for what, path in written.items() if (new / FILES[what]).exists()}
+    warn(met := warnings_of(found.result_before))
     say(found.sentence)
     say_files(written)
     return {
@@ -70,6 +72,7 @@ def run_optimisation(
         "settled": found.settled,
         **told.document,
         "rows": told.rows,
+        "warnings": met,
         "files": written,
     }
 

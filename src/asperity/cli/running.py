@@ -92,7 +92,7 @@ def run_case(
                 refuse_other(case, directory)
             tree = _run_alone(case, directory, source, report=report, more=more)
     else:
-        _warn(_warnings(tree))
+        warn(warnings_of(tree))
         remark("Nothing to do: this case has been run, with the same files and program (--again runs it).")
     if verdict := tree.attrs.get("verdict", ""):
         say(verdict)
@@ -104,7 +104,7 @@ def run_case(
         "computed": computed,
         "verdict": verdict,
         "laws": law_summaries(tree),
-        "warnings": _warnings(tree),
+        "warnings": warnings_of(tree),
         "files": written,
     }
 
@@ -134,7 +134,7 @@ def _run_alone(case: AnyCase, directory: Path, source: str, *, report: bool, mor
         tree: DataTree = run(prepared, progress=progress)
     if name and name == name_of_run(case):  # no file was changed meanwhile
         tree.attrs[provenance.RUN.name] = name
-    _warn(_warnings(tree))
+    warn(warnings_of(tree))
     if CONVERGENCE not in more:
         del prepared  # what it holds is not needed beside what is written
     _write(tree, directory, report=report)
@@ -209,11 +209,13 @@ def announce_scan(prepared: ReadyCase) -> None:
         say(f"Scan of the path: {described_scan(scan)}.", err=True)
 
 
-def _warnings(tree: DataTree) -> list[dict[str, Any]]:
+def warnings_of(tree: DataTree) -> list[dict[str, Any]]:
+    """What a run met, each with its grade."""
     return [{"grade": "warning", **warning} for warning in json.loads(tree.attrs.get("warnings", "[]"))]
 
 
-def _warn(warnings: Iterable[dict[str, Any]]) -> None:
+def warn(warnings: Iterable[dict[str, Any]]) -> None:
+    """Say what was met, each with its grade."""
     for warning in warnings:
         times = f" ({warning['count']} times)" if warning.get("count", 1) > 1 else ""
         say(f"{warning['grade'].capitalize()}: {warning['message']}{times}", err=True)
@@ -337,7 +339,7 @@ def show_plan(case: AnyCase, source: str, *, every_key: bool = False) -> dict[st
     doubts = len(found["warnings"])
     told = f"{doubts} {'doubts' if doubts > 1 else 'doubt'}:" if doubts else "nothing in it is doubtful."
     say(f"{source}: a valid case, {told}")
-    _warn(found["warnings"])
+    warn(found["warnings"])
     rows = [(row["name"], row["value"]) for row in found["plan"]]
     rows.sort(key=lambda row: DECIDED.index(row[0]) if row[0] in DECIDED else len(DECIDED))
     say_table("What will be computed", (), rows, width=120)
@@ -363,14 +365,29 @@ def _show_keys(case: AnyCase, *, every_key: bool) -> None:
         remark(f"{len(items) - len(changed)} keys are at their defaults (--keys shows them).")
 
 
+def doubted(case: AnyCase, source: str) -> list[dict[str, Any]]:
+    """Say what is doubtful of a case from which other work starts; of one that no run takes nothing is."""
+    try:
+        prepared = prepared_case(case, source)
+    except InputError:
+        return []
+    found = [_told(each.message) for each in prepared.caught]
+    warn(found)
+    return found
+
+
+def _told(message: Warning | str) -> dict[str, Any]:
+    return {"grade": getattr(message, "grade", Grade.WARNING).value, "message": str(message)}
+
+
 def planned(prepared: ReadyCase) -> dict[str, Any]:
     """What will be computed from a case: rows, seconds and warnings."""
     with progress_bar() as progress, PhysicsWarning.caught() as planning:
         found: Plan = function_named(prepared.case.PLANNED_BY)(prepared, progress)
     met = [*prepared.caught, *planning]
     work = found.work
-    caught = [(getattr(each.message, "grade", Grade.WARNING), str(each.message)) for each in met]
-    caught += [(each.grade, each.message) for each in found.findings if each.grade]
+    doubts = [_told(each.message) for each in met]
+    doubts += [{"grade": each.grade.value, "message": each.message} for each in found.findings if each.grade]
     return {
         "plan": [{"name": name, "value": value} for name, value in found.rows],
         "work": {
@@ -381,5 +398,5 @@ def planned(prepared: ReadyCase) -> dict[str, Any]:
             "steps": work.steps,
             "bytes": sum(scan.bytes for scan in work.scans.values()),
         },
-        "warnings": [{"grade": grade.value, "message": message} for grade, message in caught],
+        "warnings": doubts,
     }
