@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from asperity.case.any_case import AnyCase
 from asperity.parameters import Quantity, limits_in
 from asperity.units import quantity, written
+from asperity.written_numbers import rounded
 
 OF_ANYTHING = {
     "hurst": "0.05 to 1: textures that are rough on all scales have",
@@ -60,5 +61,5 @@ def _beyond(key: str, value: object, kind: object, within: str) -> Iterator[str]
     least, most = (quantity(each, unit) if unit else float(each) for each in (low, high))
     for each in value if isinstance(value, tuple) else (value,):
         if isinstance(each, int | float) and math.isfinite(each) and not least <= each <= most:
-            size = written(each, unit, low.partition(" ")[2], exactly=False) if unit else f"{each:.3g}"
+            size = written(each, unit, low.partition(" ")[2], exactly=False) if unit else rounded(each)
             yield f"{key} = {size}: {those} {low} to {high}." + f" {UNIT}" * bool(unit)
