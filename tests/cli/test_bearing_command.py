@@ -120,6 +120,36 @@ def test_a_bearing_of_ones_own_and_options_that_are_stronger():
     assert "per turn" in call("bearing", "6205", "--axial", "10 N").stdout
 
 
+FOUR_POINT = """
+balls = 12
+ball_diameter = "11.112 mm"
+pitch_diameter = "46 mm"
+arch_angle = "35 deg"
+clearance = "40 um"
+"""
+
+
+def test_of_four_point_contact_it_says_what_both_flanks_carry():
+    """Of a radial load alike; Σ 2 Q cos α cos ψ = F, and a ball turns by 1/cos α faster."""
+    Path("qj.toml").write_text(FOUR_POINT)
+    given = "bearing", "qj.toml", "--radial", "2 kN", "--speed", "1800 1/min"
+    said = words_of(call(*given).output)
+    document = json.loads(call(*given, "--json").stdout)
+    loads, angles = (
+        np.array(document["balls"][f"inner_{name}"], dtype=float) for name in ("loads", "angles")
+    )
+    np.testing.assert_allclose(loads[:, 0], loads[:, 1], rtol=1e-6, atol=1e-6)
+    inward = (loads * np.cos(np.nan_to_num(angles))).sum(axis=1)
+    assert inward @ np.cos(document["balls"]["azimuth"]) == pytest.approx(2000.0, rel=1e-6)
+    assert "gothic arches of 35°, clearance 40 µm, free contact angle 39.3°" in said
+    load = f"{loads.max():.4g}"
+    assert f"Flanks of the ball that carries most: {load} and {load} N on the inner ring, " in said
+    spin = "Balls on all four flanks spin by 0.157 and 0.105 rad per mm of way on the inner and outer ring"
+    tone = document["tones"]["ball"] / math.cos(math.radians(35.0))
+    assert f"{spin}, and turn about the axis of the bearing: their tone is {tone:.4g} Hz, not" in said
+    assert "Waviness that is heard" not in said
+
+
 def test_of_a_case_whose_speed_changes_it_says_that_it_takes_the_fastest():
     case = {"kind": "ball-bearing", "speed": "600..1800 1/min in 1 s", "radial": "100 N"}
     Path("run_up.toml").write_text(as_case(case | {"bearing": {"name": "6205"}}).to_toml())

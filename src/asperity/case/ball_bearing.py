@@ -30,7 +30,7 @@ from asperity.case.sections import DURATION, DURATION_OR_ZERO
 from asperity.case.speed import Speed, span_of
 from asperity.case.surface import INDEX
 from asperity.errors import InputError, PhysicsWarning
-from asperity.laws import Need, spec_of
+from asperity.laws import spec_of
 from asperity.parameters import (
     Choice,
     Flag,
@@ -42,7 +42,7 @@ from asperity.parameters import (
 )
 from asperity.rolling.resolution import PER_MODE
 from asperity.speeds import FEWEST_TURNS, SpeedCourse, covered, reached
-from asperity.structures.ball_bearing import PARTS, Kinematics
+from asperity.structures.ball_bearing import PARTS, BallBearing, Kinematics
 from asperity.structures.modal import HIGHEST
 from asperity.units import written
 from asperity.written_numbers import rounded
@@ -367,8 +367,8 @@ class BearingUnderLoad(AnyCase):
     def _problems_of_films(self) -> Iterator[InputError]:
         """Laws with which a film may be in series."""
         for number, law in enumerate(self.laws if self.films else (), 1):
-            if spec_of(law).solved_every_step or Need.DATUM in spec_of(law).needs:
-                allowed = "laws that follow a force curve or a table, where a film of oil is in series"
+            if spec_of(law).solved_every_step:
+                allowed = "laws that are not solved in every step, where a film of oil is in series"
                 yield InputError(f"laws[{number}]", f'"{law}"', allowed, "Take it out, or leave out the oil.")
 
     def problems(self) -> Iterator[InputError]:
@@ -388,7 +388,17 @@ class BearingUnderLoad(AnyCase):
             )
             yield InputError("speed", received, allowed)
         yield from self._problems_of_films()
-        balls = self.bearing.bearing.balls
+        of = self.bearing.bearing
+        if isinstance(of, BallBearing) and of.arch_angle is not None:
+            received = f"{rounded(math.degrees(of.arch_angle), 4)} deg"
+            remedy = (
+                "asperity bearing says how such a bearing carries its load. Under an axial load a ball is "
+                f"between two flanks: take bearing.contact_angle = "
+                f'"{rounded(math.degrees(of.free_angle), 4)} deg".'
+            )
+            allowed = "none of a bearing that runs, in grooves of one arc"
+            yield InputError("bearing.arch_angle", received, allowed, remedy)
+        balls = of.balls
         for name, fault in self.faults.items():
             if fault.on is None:
                 allowed = fault.keys["on"].kind.allowed

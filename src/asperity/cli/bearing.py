@@ -22,7 +22,8 @@ from asperity.scenes.bearing_at_rest import static_group
 from asperity.scenes.figures.bearing import ball_contacts_table, load_zone
 from asperity.schema import tree
 from asperity.structures.ball_bearing import PARTS, Kinematics
-from asperity.structures.bearing_statics import doubt_speed
+from asperity.structures.bearing_creepage import flank_spin
+from asperity.structures.bearing_statics import LoadedBearing, doubt_speed
 from asperity.structures.roller_bearing import PRINTED, ROLLER_BEARINGS, AnyBearing, RollerBearing
 from asperity.structures.roller_statics import LoadedRollers
 from asperity.terminal import say, say_table
@@ -37,6 +38,8 @@ OPTIONS = ("radial", "axial", "speed", "clearance", "contact_damping")
 """Keys of a bearing and its load that are options, too."""
 OIL = ("oil", "temperature")
 """Those of its lubricant."""
+FLANKS = ("inner_loads", "outer_loads", "inner_angles", "outer_angles")
+"""What is said to programs of each flank of an arch."""
 MEANINGS = {
     "outer": "BPFO: {}s pass a spot of it",
     "inner": "BPFI: {}s pass a spot of it",
@@ -116,6 +119,8 @@ def _in_words(of: AnyBearing) -> str:
             f"{clearance}, {angle}"
         )
     grooves = f"grooves of {of.inner_conformity:g} D (inner) and {of.outer_conformity:g} D (outer)"
+    if of.arch_angle is not None:
+        grooves += f", gothic arches of {rounded(math.degrees(of.arch_angle), 4)}°"
     return f"{of.balls} balls of {rolling} mm, {pitch}, {grooves}, {clearance}, free {angle}"
 
 
@@ -184,6 +189,8 @@ def _carried(keys: LoadKeys, picture: Path | None) -> dict[str, Any]:
         heaviest = np.unravel_index(int(found.inner_load.argmax()), found.inner_load.shape)
         carrying = f"{rounded(1e3 * found.carrying_length[heaviest])} of {rounded(1e3 * of.roller_length)} mm"
         say(f"Of the roller that carries most {carrying} touch the inner ring; rings are held against tilt.")
+    elif isinstance(found, LoadedBearing) and of.arches:
+        _say_flanks(found, turning)
     films = say_films(keys, found)
     tones = _say_tones(of, turning, speed)
     say(f"Balance to {rounded(found.imbalance, 1)} of the load.")
@@ -192,8 +199,27 @@ def _carried(keys: LoadKeys, picture: Path | None) -> dict[str, Any]:
         say(f"Picture: {picture.resolve()}")
     names = ("azimuth", "inner_load", "outer_load", "inner_angle", "inner_pressure", "outer_pressure")
     balls = {name: getattr(found, name)[0] for name in names}
+    if isinstance(found, LoadedBearing) and of.arches:
+        balls |= {name: getattr(found, name)[0] for name in FLANKS}
     ring = {"displacement": found.displacement, "stiffness": found.stiffness, "imbalance": found.imbalance}
     return {"balls": balls, **ring, "films": films, "tones": tones}
+
+
+def _say_flanks(found: LoadedBearing, turning: Kinematics) -> None:
+    """Say what both flanks of each ring carry of the ball that carries most, and how balls spin on them."""
+    heaviest = np.unravel_index(int(found.inner_load.argmax()), found.inner_load.shape)
+    loads = [
+        f"{rounded(float(max(each)), 4)} and {rounded(float(min(each)), 4)} N on the {ring} ring"
+        for ring, each in (("inner", found.inner_loads[heaviest]), ("outer", found.outer_loads[heaviest]))
+    ]
+    say(f"Flanks of the ball that carries most: {', '.join(loads)}; contacts of the others are in --json.")
+    spins = " and ".join(f"{rounded(1e-3 * each, 3)}" for each in flank_spin(found.bearing))
+    tone = turning.tone("ball") / math.cos(found.bearing.arch_angle or 0.0)
+    per = "Hz" if found.speed else "per turn"
+    say(
+        f"Balls on all four flanks spin by {spins} rad per mm of way on the inner and outer ring, and turn "
+        f"about the axis of the bearing: their tone is {tone:.4g} {per}, not that below."
+    )
 
 
 def _rolling(of: AnyBearing, speed: float) -> dict[str, Any]:
@@ -227,7 +253,8 @@ def _say_tones(of: AnyBearing, turning: Kinematics, speed: float) -> dict[str, f
             cells = [", ".join(f"{tone:.4g}" for tone in tones) or "–" for tones in heard]
             waves += [[name, str(order), *cells]] if any(heard) else []
     say_table("Tones of pure rolling", ["of", unit, "orders", "meaning"], rows, width=WIDTH)
-    if not isinstance(of, RollerBearing) or of.contact_angle:
+    one_arc = of.contact_angle if isinstance(of, RollerBearing) else not of.arches
+    if one_arc:
         title = "Waviness that is heard under an axial load; other small waves move nothing"
         say_table(title, ["of", "waves per turn", f"axial, {unit}", f"radial, {unit}"], waves, width=WIDTH)
     return {"cage": turning.cage} | {part: turning.tone(part) for part in PARTS} if speed else None

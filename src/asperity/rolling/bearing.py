@@ -18,6 +18,7 @@ from asperity.rolling.soundness import STILL, without_rounding
 from asperity.rolling.trajectory import Trajectory, Values, at_steps
 from asperity.speeds import SpeedCourse
 from asperity.store import Checkpoint
+from asperity.structures.ball_bearing import BallBearing
 from asperity.structures.body import Body
 from asperity.structures.ring import Around, Direction, Ring
 from asperity.structures.roller_bearing import AnyBearing
@@ -177,6 +178,8 @@ def roll_bearing(
     -------
     RolledBearing
     """
+    arches = isinstance(bearing, BallBearing) and bool(bearing.arches)
+    require(not arches, "grooves", "of two arcs", "of one arc: a ball rolls on one contact with each ring")
     total = round(settling / time_step) + round(duration / time_step)
     turning = _Turning(bearing, rings, speed, time_step, settling, total, slip)
     mechanism = turning.mechanism((inner_law, outer_law), ball_heights, centrifugal=centrifugal)

@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from asperity.arguments import ArrayLike, not_negative, one_of, real, require, whole
+from asperity.contact.gothic_arch import GothicArch
 from asperity.contact.hertz import Hertz, in_groove
 from asperity.diagnostics.hypotheses import Tone
 from asperity.parameters import Choice, MaterialOrName, Number, Quantity, checked_parameters, parameter
@@ -64,6 +65,10 @@ class BallBearing:
         neither it nor the contact angle is given.
     contact_angle : float, optional
         That at which the balls touch both grooves without load, rad, instead of the clearance.
+    arch_angle : float, optional
+        That from the middle at which a ball touches both flanks of a groove of two arcs, rad, the same of
+        both rings: a bearing of four-point contact, whose clearance is that of such balls. By default grooves
+        have one arc.
     preload : float
         Constant axial force on the inner ring, as of a spring, N.
     hardness : float
@@ -136,6 +141,13 @@ class BallBearing:
     contact_angle: float | None = parameter(
         _ANGLE, "15 deg", "free contact angle, instead of the clearance", _ANGLES, default=None
     )
+    arch_angle: float | None = parameter(
+        Quantity("rad", above=0),
+        "35 deg",
+        "angle at which a ball touches both flanks of each groove: a gothic arch, of four-point contact",
+        _ANGLES,
+        default=None,
+    )
     preload: float = parameter(
         Quantity("N", at_least=0), "0 N", "constant axial force, as of a spring", _LOADS, default=0.0
     )
@@ -157,8 +169,12 @@ class BallBearing:
         received = f"{self.balls} of {D * 1e3:.4g} mm on a pitch diameter of {d_m * 1e3:.4g} mm"
         allowed = f"balls that fit side by side: at most {room * 1e3:.4g} mm"
         require(room >= D, "balls", received, allowed, "Take fewer or smaller balls.")
-        both = self.clearance is not None and self.contact_angle is not None
-        require(not both, "bearing", "both clearance and contact_angle", "one of them", "Remove one.")
+        for other in ("clearance", "arch_angle"):
+            both = getattr(self, other) is not None and self.contact_angle is not None
+            require(not both, "bearing", f"both {other} and contact_angle", "one of them", "Remove one.")
+        if self.arch_angle is not None:
+            allowed = "an angle above 0, up to 1.4 rad (80 deg)"
+            real("arch_angle (rad)", self.arch_angle, allowed, above=0.0, at_most=1.4)
         if self.contact_angle is not None:
             allowed = "an angle from 0 to 1.4 rad (80 deg)"
             real("contact_angle (rad)", self.contact_angle, allowed, at_least=0.0, at_most=1.4)
@@ -225,8 +241,27 @@ class BallBearing:
 
     @property
     def free_angle(self) -> float:
-        """Contact angle without load, rad: cos α = 1 − P_d/2A, zero of one without clearance."""
-        return math.acos(min(1.0, 1.0 - 0.5 * self.radial_clearance / self.groove_distance))
+        """Contact angle without load, rad: cos α = 1 − P_d/2A, zero of one without clearance.
+
+        Of arches cos α = cos α_g − P_d/2A, with that of the flanks, α_g: of a ball that an axial load presses
+        between two of them.
+        """
+        return math.acos(min(1.0, self.centres_apart / self.groove_distance))
+
+    @property
+    def centres_apart(self) -> float:
+        """Radial distance of the centres of both grooves, rings centred, m: A cos α_g − P_d/2."""
+        touching = self.groove_distance * math.cos(self.arch_angle or 0.0)
+        return touching - 0.5 * self.radial_clearance
+
+    @cached_property
+    def arches(self) -> tuple[GothicArch, ...]:
+        """Sections of the inner and the outer groove, where they have two arcs; else none."""
+        if self.arch_angle is None:
+            return ()
+        D = self.ball_diameter
+        radii = self.inner_conformity * D, self.outer_conformity * D
+        return tuple(GothicArch.at_angle(self.arch_angle, 0.5 * D, each) for each in radii)
 
     def apart(self, contact_angle: float) -> float:
         """Gap of both contacts of a ball together, rings centred, along their normal at an angle, rad; m.
@@ -319,11 +354,11 @@ class BallBearing:
         -------
         dict
             `asperity.diagnostics.Tone` of ``"outer"``, ``"inner"`` and ``"ball"``: in pure rolling at that
-            angle, or at 0 of a radial load, with limits from 10 degrees less to 5 more than the free angle,
-            15 degrees at least, and for a cage that lags by up to 1 %.
+            angle, or of a radial load at 0 or that of the flanks, with limits from 10 degrees less to 5 more
+            than the free angle, 15 degrees at least, and for a cage that lags by up to 1 %.
         """
         pressed = axial or self.preload > 0.0 or self.contact_angle is not None
-        angle = self.free_angle if pressed else 0.0
+        angle = self.free_angle if pressed else (self.arch_angle or 0.0)
         least = max(angle - math.radians(10.0), 0.0)
         most = max(self.free_angle + math.radians(5.0), math.radians(15.0))
         return tones_between(self, angle, least, most)

@@ -5,7 +5,7 @@ from typing import Literal
 
 import numpy as np
 
-from asperity.arguments import Array, one_of
+from asperity.arguments import Array, one_of, require
 from asperity.contact.groove_creepage import (
     conformal_creepage,
     contact_curvature,
@@ -55,15 +55,30 @@ def spin_creepage(bearing: BallBearing, angles: tuple[Array, Array], control: Ri
     R_i,o = (d_m ∓ D cos α)/2 of the contacts from the axis and the radius R of a ball. T. A. Harris and
     M. N. Kotzalas, Advanced Concepts of Bearing Technology, 5th ed. (2007), chapter 2.
     """
-    axis = ball_axis(bearing, angles, control)
-    radius = 0.5 * bearing.ball_diameter
-    pitch = 0.5 * bearing.pitch_diameter
-    inner, outer = angles
-    on_inner = np.sin(inner) / (pitch - radius * np.cos(inner)) + np.tan(inner - axis) / radius
-    on_outer = np.sin(outer) / (pitch + radius * np.cos(outer)) - np.tan(outer - axis) / radius
+    on_inner, on_outer = _spins(bearing, angles, ball_axis(bearing, angles, control))
     if control == "outer":
         return np.abs(on_inner), np.where(np.isnan(on_outer), np.nan, 0.0)
     return np.where(np.isnan(on_inner), np.nan, 0.0), np.abs(on_outer)
+
+
+def _spins(bearing: BallBearing, angles: tuple[Array, Array], axis: Array) -> tuple[Array, Array]:
+    """Spins on the inner and the outer ring of balls that turn about an axis inclined by an angle, rad/m."""
+    radius, pitch = 0.5 * bearing.ball_diameter, 0.5 * bearing.pitch_diameter
+    inner, outer = angles
+    on_inner = np.sin(inner) / (pitch - radius * np.cos(inner)) + np.tan(inner - axis) / radius
+    on_outer = np.sin(outer) / (pitch + radius * np.cos(outer)) - np.tan(outer - axis) / radius
+    return on_inner, on_outer
+
+
+def flank_spin(bearing: BallBearing) -> tuple[float, float]:
+    """Spin creepages, rad/m, of a ball that rolls on all four flanks, on the inner and on the outer ring.
+
+    Its axis is that of the bearing, so that it slides in the middle of no contact: the spins are
+    sin α/R_i + tan α/R and tan α/R − sin α/R_o, as in `spin_creepage` with β = 0.
+    """
+    angle = np.array(bearing.arch_angle or 0.0)
+    on_inner, on_outer = _spins(bearing, (angle, angle), np.array(0.0))
+    return float(on_inner), abs(float(on_outer))
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,6 +110,7 @@ def creepage_of(loaded: LoadedBearing) -> BearingCreepage:
     (A. B. Jones, J. Basic Eng. 81 (1959) 1), that of the inner one by the cosine of what the angles differ.
     """
     of = loaded.bearing
+    require(not of.arches, "grooves", "of two arcs", "of one arc: on two flanks a ball spins on both rings")
     angles = loaded.inner_angle, loaded.outer_angle
     loads = loaded.inner_load, loaded.outer_load
     axes = [loaded.semi_axes(ring) for ring in RINGS]

@@ -16,6 +16,8 @@ from asperity.structures.ball_bearing import FASTEST, FATIGUE_PRESSURE, STATIC_P
 from asperity.structures.least_energy import TOLERANCE, least_energy
 from asperity.written_numbers import rounded
 
+LEAST = 1e-6
+"""N, of what holds a ball between arches: less is none."""
 STEPS = 24
 """Angles of the cage over the passing of a ball."""
 SPEEDS = 14
@@ -36,10 +38,11 @@ class LoadedBearing:
         ψ of the balls, rad; those of the first ball are the angles of the cage.
     displacement : ndarray (m, 3)
         Of the inner ring: along the radial load, across it (towards ψ = 90°), axially, m.
-    inner_load, outer_load : ndarray (m, Z)
-        Of the contacts, N.
-    inner_angle, outer_angle : ndarray (m, Z)
-        Of the contacts, rad; NaN of balls that do not touch.
+    inner_loads, outer_loads : ndarray (m, Z, k)
+        Of the contacts, N: one of each ball and ring, or of two flanks those against a positive and against a
+        negative axial load.
+    inner_angles, outer_angles : ndarray (m, Z, k)
+        Of the contacts, rad; NaN of those that do not touch.
     stiffness : ndarray (m, 3, 3)
         Derivative of the force by the displacement of the inner ring, N/m.
     imbalance : float
@@ -53,12 +56,32 @@ class LoadedBearing:
     speed: float
     azimuth: Array
     displacement: Array
-    inner_load: Array
-    outer_load: Array
-    inner_angle: Array
-    outer_angle: Array
+    inner_loads: Array
+    outer_loads: Array
+    inner_angles: Array
+    outer_angles: Array
     stiffness: Array
     imbalance: float
+
+    @property
+    def inner_load(self) -> Array:
+        """Load of the heavier contact of each ball with the inner ring (m, Z), N."""
+        return self.inner_loads.max(axis=-1)
+
+    @property
+    def outer_load(self) -> Array:
+        """Load of the heavier contact of each ball with the outer ring (m, Z), N."""
+        return self.outer_loads.max(axis=-1)
+
+    @property
+    def inner_angle(self) -> Array:
+        """Angle of that contact with the inner ring (m, Z), rad; NaN of balls that do not touch."""
+        return _of_heavier(self.inner_loads, self.inner_angles)
+
+    @property
+    def outer_angle(self) -> Array:
+        """Angle of that contact with the outer ring (m, Z), rad; NaN of balls that do not touch."""
+        return _of_heavier(self.outer_loads, self.outer_angles)
 
     def semi_axes(self, ring: str) -> tuple[Array, Array]:
         """Semi-axes of the contacts with the ``"inner"`` or ``"outer"`` ring, along and across (m, Z), m."""
@@ -105,8 +128,8 @@ class LoadedBearing:
         what (I − S)ᵀ C_i (I − S) + Sᵀ C_o S says.
         """
         of_contact = not_negative("damping of a contact (N s/m)", of_contact)
-        inner = self._links(self.inner_load, self.inner_angle, self.bearing.inner_conformity, "inner")
-        outer = self._links(self.outer_load, self.outer_angle, self.bearing.outer_conformity, "outer")
+        inner = self._links(self.inner_loads, self.inner_angles, self.bearing.inner_conformity, "inner")
+        outer = self._links(self.outer_loads, self.outer_angles, self.bearing.outer_conformity, "outer")
         held = np.where((self.outer_load > 0.0)[..., None, None], inner[0] + outer[0], np.eye(2))
         follows = np.linalg.solve(held, inner[0])
         left = np.eye(2) - follows
@@ -126,7 +149,7 @@ class LoadedBearing:
         across = load / ((conformity - 0.5) * self.bearing.ball_diameter + overlap)
         outer = normal[..., :, None] * normal[..., None, :]
         stiffness = (along - across)[..., None, None] * outer + across[..., None, None] * np.eye(2)
-        return stiffness, touching[..., None, None] * outer
+        return stiffness.sum(axis=2), (touching[..., None, None] * outer).sum(axis=2)
 
     @property
     def touching(self) -> Array:
@@ -135,9 +158,15 @@ class LoadedBearing:
 
     @property
     def contact_angle(self) -> float:
-        """Mean angle of both contacts, of balls that touch the inner ring weighted with that load, rad."""
-        angle = np.where(self.inner_load > 0.0, 0.5 * (self.inner_angle + self.outer_angle), 0.0)
-        return float((angle * self.inner_load).sum() / max(self.inner_load.sum(), 1e-300))
+        """Mean angle of both contacts, of balls that touch the inner ring weighted with that load, rad.
+
+        Of two flanks without sign.
+        """
+        outer = np.where(self.outer_loads > 0.0, self.outer_angles, self.inner_angles)
+        angle = np.where(self.inner_loads > 0.0, 0.5 * (self.inner_angles + outer), 0.0)
+        if self.bearing.arches:
+            angle = np.abs(angle)
+        return float((angle * self.inner_loads).sum() / max(self.inner_loads.sum(), 1e-300))
 
     @cached_property
     def leaving_speed(self) -> float | None:
@@ -152,6 +181,11 @@ class LoadedBearing:
             return bool(_solved(of, self.radial, self.axial, speed, angles).touching.min() == of.balls)
 
         return None if self.touching.min() == of.balls else speed_of_leaving(all_touch, self.speed)
+
+
+def _of_heavier(loads: Array, angles: Array) -> Array:
+    """Angles (m, Z) of the heavier of k contacts, of loads and angles (m, Z, k)."""
+    return np.take_along_axis(angles, loads.argmax(axis=-1)[..., None], axis=-1)[..., 0]
 
 
 def speed_of_leaving(all_touch: Callable[[float], bool], fastest: float) -> float | None:
@@ -237,8 +271,27 @@ class _Balls:
         of = self.bearing
         return (of.outer_conformity - 0.5) * of.ball_diameter, of.outer_contact.stiffness_constant
 
+    def links(self, stretch: Array, ring: str) -> tuple[Array, Array, Array, Array, Array]:
+        """What contacts with a ring hold along a stretch (…, 2) of ball and groove: all flanks together.
+
+        Energy, force (2) and stiffness (2, 2), as of `_link`; and loads and angles of the k contacts.
+        """
+        of = self.bearing
+        length, constant = self.inner if ring == "inner" else self.outer
+        offset = of.arches[ring == "outer"].offset if of.arches else 0.0
+        sides = (offset, -offset) if of.arches else (0.0,)
+        found = [_link(stretch + np.array([0.0, side]), length, constant) for side in sides]
+        angles = [
+            np.where(load > 0.0, np.arctan2(force[..., 1], force[..., 0]), np.nan)
+            for _, force, _, load in found
+        ]
+        energy, force, stiffness = (np.sum([each[i] for each in found], axis=0) for i in range(3))
+        return energy, force, stiffness, np.stack([each[3] for each in found], -1), np.stack(angles, -1)
+
     def together(self, stretch: Array) -> tuple[Array, Array, Array, Array]:
         """Energy, force on the inner groove centre, its stiffness, and place of the ball (…, 2)."""
+        if self.bearing.arches:
+            return self._between(stretch, *self._on_flanks(stretch))
         series = self.bearing.series_stiffness
         energy, force, stiffness, load = _link(stretch, self.bearing.groove_distance, series)
         normal = stretch / np.linalg.norm(stretch, axis=-1)[..., None]
@@ -248,21 +301,48 @@ class _Balls:
             return energy, force, stiffness, ball
         free = np.zeros_like(stretch)
         free[..., 0] = length + (self.lift / constant) ** (2.0 / 3.0)
-        ball, _ = least_energy(
-            lambda at: self._apart(stretch, at),
-            np.where((load > self.lift)[..., None], ball, free),
-            0.1 * max(self.lift, float(load.max())),
-            "balance of a ball",
-        )
-        energy, force, inner, _ = _link(stretch - ball, *self.inner)
-        outer = _link(ball, *self.outer)
-        condensed = inner - inner @ np.linalg.solve(inner + outer[2], inner)
+        start = np.where((load > self.lift)[..., None], ball, free)
+        return self._between(stretch, start, max(self.lift, float(load.max())))
+
+    def _on_flanks(self, stretch: Array) -> tuple[Array, float]:
+        """Where balls of arches would be without each other's line, mean by their loads (…, 2); the largest.
+
+        A line are the flanks that face each other; balls that no line presses are thrown into both flanks.
+        """
+        of = self.bearing
+        length, constant = self.outer
+        cosine = math.cos(of.arch_angle or 0.0)
+        thrown = np.zeros_like(stretch)
+        thrown[..., 0] = length * cosine + (self.lift / (2.0 * cosine * constant)) ** (2.0 / 3.0) / cosine
+        inner, outer = (each.offset for each in of.arches)
+        weight = np.full(stretch.shape[:-1], max(self.lift, LEAST))
+        ball = weight[..., None] * thrown
+        largest = max(self.lift, LEAST)
+        for side in (1.0, -1.0):
+            line = stretch + np.array([0.0, side * (inner + outer)])
+            load = _link(line, of.groove_distance, of.series_stiffness)[3]
+            normal = line / np.linalg.norm(line, axis=-1)[..., None]
+            place = (length + (load / constant) ** (2.0 / 3.0))[..., None] * normal
+            place = place - np.array([0.0, side * outer])
+            ball = ball + load[..., None] * place
+            weight = weight + load
+            largest = max(largest, float(load.max()))
+        return ball / weight[..., None], largest
+
+    def _between(self, stretch: Array, start: Array, largest: float) -> tuple[Array, Array, Array, Array]:
+        """As `together`, with balls looked for from some places on (…, 2), under loads up to one, N."""
+        ball, _ = least_energy(lambda at: self._apart(stretch, at), start, 0.1 * largest, "balance of a ball")
+        energy, force, inner, *_ = self.links(stretch - ball, "inner")
+        outer = self.links(ball, "outer")
+        held = inner + outer[2]
+        ridge = 1e-12 * np.trace(held, axis1=-2, axis2=-1) + 1e-9
+        condensed = inner - inner @ np.linalg.solve(held + ridge[..., None, None] * np.eye(2), inner)
         return energy + outer[0] - self.lift * ball[..., 0], force, condensed, ball
 
     def _apart(self, stretch: Array, ball: Array) -> tuple[Array, Array, Array]:
         """Energy of balls at some places, its gradient and Hessian."""
-        inner = _link(stretch - ball, *self.inner)
-        outer = _link(ball, *self.outer)
+        inner = self.links(stretch - ball, "inner")
+        outer = self.links(ball, "outer")
         gradient = outer[1] - inner[1] - self.lift * np.array([1.0, 0.0])
         return inner[0] + outer[0] - self.lift * ball[..., 0], gradient, inner[2] + outer[2]
 
@@ -282,7 +362,8 @@ def _solved(bearing: BallBearing, radial: float, axial: float, speed: float, ang
     moved = _moved(azimuth)
     A = bearing.groove_distance
     load = np.array([radial, 0.0, axial])
-    rest = np.array([A - 0.5 * bearing.radial_clearance, 0.0])
+    rest = np.array([bearing.centres_apart, 0.0])
+    offsets = sum(each.offset for each in bearing.arches)
 
     def stretched(ring: Array) -> Array:
         return rest + np.einsum("mzik,mk->mzi", moved, ring)
@@ -300,16 +381,13 @@ def _solved(bearing: BallBearing, radial: float, axial: float, speed: float, ang
     start = np.zeros((len(angles), 3))
     pressed = (5.0 * scale / bearing.balls / bearing.series_stiffness) ** (2.0 / 3.0)
     start[:, 0] = (max(0.5 * bearing.radial_clearance, 0.0) + pressed) * (radial > 0.0)
-    start[:, 2] = (A * math.sin(bearing.free_angle) + math.sqrt(2.0 * A * pressed)) * (axial > 0.0)
+    along = A * math.sin(bearing.free_angle) - offsets + math.sqrt(2.0 * A * pressed)
+    start[:, 2] = along * (axial > 0.0)
     ring, imbalance = least_energy(energy_of, start, max(scale, lift), "balance of the inner ring")
     stretch = stretched(ring)
     ball = balls.together(stretch)[3]
-    inner, outer = _link(stretch - ball, *balls.inner), _link(ball, *balls.outer)
-    inner_angle, outer_angle = (
-        np.where(link[3] > 0.0, np.arctan2(link[1][..., 1], link[1][..., 0]), np.nan)
-        for link in (inner, outer)
-    )
-    found = azimuth, ring, inner[3], outer[3], inner_angle, outer_angle, energy_of(ring)[2]
+    inner, outer = balls.links(stretch - ball, "inner"), balls.links(ball, "outer")
+    found = azimuth, ring, inner[3], outer[3], inner[4], outer[4], energy_of(ring)[2]
     return LoadedBearing(bearing, radial, axial, speed, *found, imbalance)
 
 
@@ -333,6 +411,7 @@ def _doubt(found: LoadedBearing) -> None:
             cause=f"{rounded(heaviest, 4)} N of one ball on the {ring} ring",
             lighter=lighter,
         )
+        _doubt_flanks(found, ring)
         peak = float(found._pressure(ring).max())
         if peak > min(STATIC_PRESSURE, of.hardness):
             hard = peak > of.hardness
@@ -349,6 +428,17 @@ def _doubt(found: LoadedBearing) -> None:
             "all of which are pressed at rest; the first one leaves at "
             f"{rounded(60.0 * found.leaving_speed, 5)} 1/min. Raise axial load or preload."
         )
+
+
+def _doubt_flanks(found: LoadedBearing, ring: str) -> None:
+    """Refuse contacts that reach the bottom of an arch, where its arcs meet."""
+    if not found.bearing.arches:
+        return
+    across = float(found.semi_axes(ring)[1].max())
+    most = found.bearing.arches[ring == "outer"].flank
+    received = f"half an axis of {rounded(1e3 * across)} mm across the {ring} raceway"
+    allowed = f"at most {rounded(1e3 * most)} mm, where the arcs of the arch meet"
+    require(across <= most, "contact", received, allowed, "Lower the load, or take a wider arch_angle.")
 
 
 def _doubt_fit(of: BallBearing) -> None:

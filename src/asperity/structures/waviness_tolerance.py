@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from asperity.arguments import positive, require
-from asperity.structures.ball_bearing import PARTS
+from asperity.structures.ball_bearing import PARTS, BallBearing
 from asperity.structures.bearing_statics import LoadedBearing
 from asperity.structures.roller_bearing import AnyBearing
 from asperity.structures.roller_statics import LoadedRollers
@@ -98,6 +98,8 @@ def wave_tolerances(
     to the velocity of one wave, and energies of several add. F. P. Wardle, Proc. IMechE 202 C (1988) 305.
     """
     touching = float(found.touching.min())
+    arches = isinstance(bearing, BallBearing) and bool(bearing.arches)
+    require(not arches, "grooves", "of two arcs", "of one arc: waves of two flanks are not in it")
     received = f"{touching:g} of {bearing.balls} {bearing.ELEMENT}s that touch"
     allowed = "a load under which all touch, an axial one, or a clearance below zero"
     require(touching == bearing.balls, "load", received, allowed)
