@@ -5,9 +5,12 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from asperity import Beam, ModalStructure, material
-from asperity.laws import HertzLaw, Linear
+from asperity.errors import InputError
+from asperity.kernels.pointforce import evaluate_all
+from asperity.laws import HertzLaw, Linear, Printed
+from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.texture import StateTexture
-from asperity.rolling import steps
+from asperity.rolling import stepper, steps
 from asperity.rolling.roll import roll_bodies
 from asperity.structures.body import Body, carriage, chain
 from one_contact import Shelf, Stepped, first_contact, rigid_bar, rough, same
@@ -168,3 +171,28 @@ def test_the_energy_of_a_bogie_closes_with_dampers_of_any_stiffness(damper):
     found = roll_bodies(BEAM, [bogie], [law] * 2, positions=[0.0], **PATH | {"time_step": 2e-5})
     assert found.energy.shares["damping of the bodies"] > 0.0
     assert found.energy.residual < 1e-5
+
+
+def test_what_a_law_says_of_a_run_is_said_of_all_its_pieces():
+    """As of one laid out on all the way: where surfaces touch, and the damper pulls in flight; how close."""
+    law = Printed(ForceCurve.hertz(2e10), rough(1e-5, 1e-4, -0.01), 4e-6, damping=5.0)
+    path = {"speed": 1.0, "start": 0.05, "duration": 0.05, "time_step": 5e-6, "positions": [0.0]}
+    run = roll_bodies(None, [Body.rigid(0.02, 0.4)], [law], **path)
+    assert run.contact_force.shape[1] > 2 * stepper.LONGEST
+    approach = run.relative_displacement[0] - run.softening[0] * run.contact_force[0]
+    elastic = evaluate_all(law.prepare(run.positions[0]), approach, 0)[0]
+    assert_array_equal(run.in_contact[0], elastic > 0.0)
+    assert 0.05 < run.in_contact.mean() < 0.95
+    assert_array_equal(run.visited, [[approach.min(), approach.max()]])
+    assert approach.argmin() < 2 * stepper.LONGEST  # not in the last piece
+
+
+def test_a_way_that_a_law_does_not_know_is_refused_before_anything_rolls():
+    law = HertzLaw(1e9, rough(1e-7, 1e-4, 0.0, points=500))
+    told = []
+    with pytest.raises(InputError, match="Shorten the duration or provide a longer texture"):
+        roll_bodies(
+            None, [BALL], [law], positions=[0.0], speed=1.0, start=0.01, duration=0.1, time_step=5e-6,
+            progress=lambda *done: told.append(done),
+        )  # fmt: skip
+    assert not told

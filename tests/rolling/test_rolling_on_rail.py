@@ -175,7 +175,7 @@ def test_what_a_spring_carries_above_two_wheels_may_be_a_structure(between):
 
 def test_wheels_go_on_where_they_were_on_poles_as_good_as_the_kernels_themselves(kernel, between):
     law, forces = HertzLaw(9.4e10, texture(2e-5, 30000)), []
-    path = PATH | {"duration": 0.2, "positions": [0.0, 2.5]}
+    path = PATH | {"duration": 0.25, "positions": [0.0, 2.5]}
 
     def stop(done, total, what):
         raise KeyboardInterrupt
@@ -185,7 +185,7 @@ def test_wheels_go_on_where_they_were_on_poles_as_good_as_the_kernels_themselves
         whole = roll_bodies(rail, [RIGID] * 2, [law] * 2, **path)
         with pytest.raises(KeyboardInterrupt):
             roll_bodies(rail, [RIGID] * 2, [law] * 2, progress=stop, checkpoint=shelf, **path)
-        assert 0 < shelf.arrays["motion.counts"][0] < 4000
+        assert 0 < shelf.arrays["motion.counts"][0] < whole.history.shape[1] - 1
         resumed = roll_bodies(rail, [RIGID] * 2, [law] * 2, checkpoint=shelf, **path)
         assert_array_equal(resumed.contact_force, whole.contact_force)
         assert_array_equal(resumed.over_displacement, whole.over_displacement)

@@ -104,6 +104,19 @@ def test_a_varying_compliance_is_periodic_from_the_first_passing_of_a_ball_on():
     assert_allclose(first, last, rtol=0.0, atol=1e-4 * np.ptp(last))
 
 
+def test_dampers_press_from_the_start_as_balls_go_into_and_out_of_the_load():
+    """They carry 1 % of the load here: the force goes on evenly from the first step."""
+    bearing = BallBearing.named("6205")
+    rings = BearingRings(Ring.rigid(0.5), Ring.rigid(0.3, radial_stiffness=1e8, damping_ratio=0.3))
+    path = {"duration": 2e-5, "time_step": 1e-6}
+    force = roll_bearing(
+        bearing, rings, *hertz(bearing, 2000.0), radial=100.0, speed=30.0, **path
+    ).contact_force
+    on_the_way = np.abs(np.diff(force[:, 10:])).max()
+    assert on_the_way > 1e-3
+    assert_allclose(np.diff(force[:, :3]), np.diff(force[:, 10:13]), rtol=0.0, atol=0.2 * on_the_way)
+
+
 def test_all_of_a_body_moves_on_with_its_contact():
     """A sprung mass above a wheel, which goes down the static bow of a beam."""
     beam = Beam(

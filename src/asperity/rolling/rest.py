@@ -1,5 +1,7 @@
 """Where every run begins: at rest under its loads, and moving on as if all had long rolled."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -131,12 +133,12 @@ def _some(values: Array) -> str:
     return ", ".join(f"{value:.4g}" for value in values[:8])
 
 
-def evaluated(law: Prepared | SteppedLaw, approach: float) -> tuple[float, float]:
-    """Force, N, and stiffness, N/m, of a law at the start, for an approach, m."""
+def evaluated(law: Prepared | SteppedLaw, damper: float, approach: float) -> tuple[float, float]:
+    """Force, N, and stiffness, N/m, of a law at the start, with its damper's force, N, for an approach, m."""
     if not isinstance(law, Prepared):
         return law.evaluate(0, approach)
     force, stiffness, _ = evaluate_all(law, np.array([approach]), 0)
-    return float(force[0]), float(stiffness[0])
+    return float(force[0]) + damper, float(stiffness[0])
 
 
 def shapes_at_contacts(ground: Ground, system: System) -> Array:
@@ -147,10 +149,13 @@ def shapes_at_contacts(ground: Ground, system: System) -> Array:
     return np.hstack([ground.shapes, flexible.reshape(n, -1)])
 
 
-def evaluations(prepared: Sequence[Prepared | SteppedLaw]) -> tuple[list[Evaluation], float]:
-    """Laws at the start, and to what the forces at rest are exact, relative to the loads."""
+def evaluations(prepared: Sequence[Prepared | SteppedLaw], dampers: Array) -> tuple[list[Evaluation], float]:
+    """Laws at the start with forces of dampers (n,), N, and to what all are exact, relative to the loads."""
     looked_up = all(isinstance(law, Prepared) for law in prepared)
-    return [partial(evaluated, law) for law in prepared], TOLERANCE if looked_up else STEPPED_TOLERANCE
+    laws: list[Evaluation] = [
+        partial(evaluated, *each) for each in zip(prepared, dampers.tolist(), strict=True)
+    ]
+    return laws, TOLERANCE if looked_up else STEPPED_TOLERANCE
 
 
 def set_down(
@@ -169,7 +174,20 @@ def set_down(
     just come onto a structure at rest. Modes that nothing holds are where constant forces and contacts hold
     each other; without constant forces on any structure they stay where they are.
     """
-    rest = _at_rest(ground, bodies, system, prepared)
+    damping = np.array([law.damping if isinstance(law, Prepared) else 0.0 for law in prepared])
+    rest = _at_rest(ground, bodies, system, prepared, np.zeros(len(damping)))
+    closer = _move_on(ground, bodies, system, rest, entering)
+    most = np.maximum(rest.motion.force[0], 0.0)  # of what hardly touches it is not known
+    dampers = np.clip(damping * closer, -most, most)
+    if np.any(np.abs(dampers) > TOLERANCE * system.loads):  # as the rest moves on, they press, too
+        rest = _at_rest(ground, bodies, system, prepared, dampers)
+        closer = _move_on(ground, bodies, system, rest, entering)
+    rest.motion.approach[1] -= system.time_step * closer
+    return rest.stiffness, rest.motion
+
+
+def _move_on(ground: Ground, bodies: Sequence[Body], system: System, rest: Rest, entering: bool) -> Array:
+    """Give everything at rest the rates of a rest that goes on; those of the approaches (n,), m/s."""
     motion = rest.motion
     moving = motion.force[0] * ~_on_support(ground) if entering else motion.force[0]
     s = len(ground.natural)
@@ -184,9 +202,8 @@ def set_down(
     rates = _solved(matrix + firm @ shapes, pulled - firm @ moved)
     closer = -(moved + shapes @ rates)
     motion.velocity[:] = (pushed + (rest.stiffness * closer) @ rest.shapes) * softness
-    motion.approach[1] -= system.time_step * closer
     _place(bodies, rest.free, rates, motion.velocity, motion.core[:, system.core_shapes.shape[1] :])
-    return rest.stiffness, motion
+    return closer
 
 
 def _place(bodies: Sequence[Body], free: NDArray[np.bool_], values: Array, modes: Array, core: Array) -> None:
@@ -218,15 +235,20 @@ class Rest:
 
 
 def _at_rest(
-    ground: Ground, bodies: Sequence[Body], system: System, prepared: Sequence[Prepared | SteppedLaw]
+    ground: Ground,
+    bodies: Sequence[Body],
+    system: System,
+    prepared: Sequence[Prepared | SteppedLaw],
+    dampers: Array,
 ) -> Rest:
+    """Everything at rest, with forces of the contacts' dampers (n,), N."""
     n = len(system.loads)
     shapes = shapes_at_contacts(ground, system)
     softness = _softness(system)
     constant = np.pad(system.constant, (0, len(softness) - len(system.constant)))
     free = shapes.any(axis=0) & (system.stiffness == 0.0) & constant.any()
     compliance = ground.yields + (shapes * softness) @ shapes.T + np.diag(system.softening)
-    laws, relative = evaluations(prepared)
+    laws, relative = evaluations(prepared, dampers)
     force = np.concatenate([body.static_loads for body in bodies])
     pressed = shapes @ (softness * constant)
     displaced = pressed
@@ -246,7 +268,8 @@ def _at_rest(
     motion.push[:] = constant + force @ shapes
     motion.displacement[:] = motion.push * softness
     _place(bodies, free, coordinates, motion.displacement, motion.core)
-    motion.force[:] = motion.trial[:] = motion.elastic[:] = force
+    motion.force[:] = motion.trial[:] = force
+    motion.elastic[:] = force - dampers
     motion.approach[:] = approach
     return Rest(motion, stiffness, shapes, free, compliance, rates)
 
