@@ -4,6 +4,7 @@
     python benchmarks/cell_rims.py --check    # against Hertz, 4 to 24 cells, balls and ellipses
     python benchmarks/cell_rims.py --rough    # rough balls against grids four times as fine
     python benchmarks/cell_rims.py --choice   # where covered cells serve better: `SMOOTH`
+    python benchmarks/cell_rims.py --fresh    # likewise, textures that nothing was chosen by
     python benchmarks/cell_rims.py --cost     # time and iterations against those of whole cells, in turn
 
 The contact of a ball on a half-space is known in closed form: half-width, approach, radius and modulus E*
@@ -256,16 +257,17 @@ def textures_of_patch(count, fine, height, seed):
     return {"short waves": short, "self-affine": affine * height / affine.std()}
 
 
-def check_choice(seeds=6):
-    """Print force and stiffness of rough balls on covered and whole cells, as cases lay them."""
-    print("| texture | rms / approach | cells | within | F, rms, %: covered | whole | k: covered | whole |")
-    print("|---|---|---|---|---|---|---|---|")
+def check_choice(seeds=range(6)):
+    """Print force and stiffness of rough balls on cells as cases lay them, and on covered ones of means."""
+    head = "| texture | rms / approach | cells | within "
+    print(head + "| F, rms, %: covered | on means | whole | k: covered | on means | whole |")
+    print(10 * "|---" + "|")
     approaches = np.linspace(0.8, 1.2, 13)
     for name in ("short waves", "self-affine"):
         for height in (0.03, 0.07, 0.1, 0.2, 0.3):
             for across in (6, 9):
-                errors, within = {"covered": [], "whole": []}, []
-                for seed in range(seeds):
+                errors, within = {"covered": [], "means": [], "whole": []}, []
+                for seed in seeds:
                     side = 1.0 / across
                     points = 2 * math.ceil(1.6 * across) + 3
                     x = (np.arange(PARTED * points) - 0.5 * (PARTED * points - 1)) * side / PARTED
@@ -279,7 +281,10 @@ def check_choice(seeds=6):
                     bent = cell_means((gap - texture)[middle, middle])
                     pressed = bent + pressed_heights(texture[middle, middle])
                     grids = {"fine": (gap, "covered"), "covered": (pressed, "covered")}
-                    grids["whole"] = (ball.body, "whole")
+                    grids |= {
+                        "means": (cell_means(gap[middle, middle]), "covered"),
+                        "whole": (ball.body, "whole"),
+                    }
                     forces = {
                         kind: forces_of(*grid, side * points, approaches) for kind, grid in grids.items()
                     }
@@ -287,9 +292,14 @@ def check_choice(seeds=6):
                         steps = np.diff(forces[kind]) / np.diff(forces["fine"]) - 1.0
                         kept.append([np.mean((forces[kind] / forces["fine"] - 1.0) ** 2), np.mean(steps**2)])
                 rms = {kind: 100.0 * np.sqrt(np.mean(kept, axis=0)) for kind, kept in errors.items()}
-                columns = [f"{rms[kind][i]:.2f}" for i in (0, 1) for kind in ("covered", "whole")]
+                columns = [f"{rms[kind][i]:.2f}" for i in (0, 1) for kind in errors]
                 row = f"| {name} | {height} | {across} | {np.mean(within):.3f} | "
                 print(row + " | ".join(columns) + " |", flush=True)
+
+
+def check_fresh():
+    """Print the same of eight textures of each kind by which nothing was chosen."""
+    check_choice(range(201, 209))
 
 
 def forces_of(gap, cells, width, approaches):
@@ -336,7 +346,8 @@ def cost(rounds=21):
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    work = {"check": check, "rough": check_rough, "choice": check_choice, "cost": cost}
+    work = {"check": check, "rough": check_rough, "choice": check_choice}
+    work |= {"fresh": check_fresh, "cost": cost}
     chosen = parser.add_mutually_exclusive_group()
     for name, function in work.items():
         chosen.add_argument(f"--{name}", dest="work", action="store_const", const=function)

@@ -215,7 +215,7 @@ def textures_under(case: Case, contact: int, first: Textures) -> Textures:
     if points is not None:
         if points.path is not None:
             points = replace(points, path=turning(points.path, change, -before))
-        change = pressed_heights(np.pad(change, ((1, 1), (0, 0)), mode="wrap"))[1:-1]
+        change = pressed_heights(np.pad(change, ((2, 2), (0, 0)), mode="wrap"))[2:-2]
     along = np.arange(rows) - before
     added = (turns[1][:, middle] - turns[0][:, middle])[along % len(change)]
     path = None if first.path is None else turning(first.path, change, -before)

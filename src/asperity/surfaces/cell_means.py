@@ -5,13 +5,8 @@ import numpy as np
 from asperity.arguments import Array
 from asperity.surfaces.strip import Strip
 
-PRESSED = 0.75
-"""Share of the way from the middle of a cell to its mean at which a texture is pressed.
-
-Cells are pressed evenly and give way on average. On means the force of a rough contact is too small, as the
-gap that is left at the rims of small asperities is not that at the rim of a ball; on heights in the middle it
-is too large. With nine cells in the half-width neither is left: ``benchmarks/cell_rims.py --choice``.
-"""
+SHORTEST = 8.0
+"""Second differences of the shortest wave that a grid holds, over its heights: the fields of a chessboard."""
 
 
 def cell_means(heights: Array) -> Array:
@@ -30,18 +25,26 @@ def cell_means(heights: Array) -> Array:
     ndarray, shape (nx, ny)
         Means, m.
     """
-    return _towards_means(heights, 1.0)
+    return heights + _bend(heights) / 24.0
 
 
 def pressed_heights(texture: Array) -> Array:
-    """Heights (nx, ny), m, that a texture known at points (nx, ny), m, has for covered cells: near means."""
-    return _towards_means(texture, PRESSED)
+    """Heights (nx, ny), m, that a texture known at points (nx, ny), m, has for covered cells.
+
+    Means over cells of waves that are long against them, heights in their middles of the shortest wave that
+    the grid holds, and between by the second differences. Where bodies touch all over, means are pressed.
+    Where they touch on spots of a cell or two, nothing beside a spot tells that it ends there, so that it
+    counts as whole: by its mean it touches too late, by its height in the middle too early
+    (``benchmarks/cell_rims.py --choice``).
+    """
+    bend = _bend(texture)
+    return texture + (bend + _bend(bend) / SHORTEST) / 24.0
 
 
-def _towards_means(heights: Array, share: float) -> Array:
+def _bend(heights: Array) -> Array:
+    """Second differences along and across, added up."""
     z = np.pad(heights, 1, mode="reflect", reflect_type="odd")
-    beside = z[2:, 1:-1] + z[:-2, 1:-1] + z[1:-1, 2:] + z[1:-1, :-2]
-    return heights + share * (beside - 4.0 * heights) / 24.0
+    return z[2:, 1:-1] + z[:-2, 1:-1] + z[1:-1, 2:] + z[1:-1, :-2] - 4.0 * heights
 
 
 class PressedStrip:
@@ -54,6 +57,6 @@ class PressedStrip:
 
     def rows(self, first: int, stop: int) -> Array:
         """Heights of the cells of the rows first … stop − 1, m."""
-        begin = max(first - 1, 0)
-        known = pressed_heights(self.strip.rows(begin, min(stop + 1, self.shape[0])))
+        begin = max(first - 2, 0)
+        known = pressed_heights(self.strip.rows(begin, min(stop + 2, self.shape[0])))
         return known[first - begin : stop - begin]
