@@ -54,6 +54,26 @@ def test_under_a_radial_load_both_flanks_carry_alike():
     assert found.displacement[:, 2] == pytest.approx(0.0, abs=1e-12)
 
 
+def test_dampers_of_both_flanks_take_what_the_ball_leaves_them():
+    """Radially Σ 2 c cos² ψ (cos² α_i (1 − s)² + cos² α_o s²); a ball follows by s = k_i/(k_i + k_o)."""
+    found = QJ.loaded(radial=2000.0, cage_angles=[0.0])
+    carries = found.inner_load[0] > 0.0
+    stiff, seen = [], []
+    for contact, conformity, loads, angles in (
+        (QJ.inner_contact, QJ.inner_conformity, found.inner_loads, found.inner_angles),
+        (QJ.outer_contact, QJ.outer_conformity, found.outer_loads, found.outer_angles),
+    ):
+        load, angle = loads[0, carries, 0], angles[0, carries, 0]
+        approach = contact.approach(1.0) * load ** (2.0 / 3.0)
+        across = load / ((conformity - 0.5) * QJ.ball_diameter + approach)
+        stiff.append(1.5 * load / approach * np.cos(angle) ** 2 + across * np.sin(angle) ** 2)
+        seen.append(np.cos(angle) ** 2)
+    follows = stiff[0] / (stiff[0] + stiff[1])
+    of_ball = seen[0] * (1.0 - follows) ** 2 + seen[1] * follows**2
+    expected = 2.0 * 20.0 * (of_ball * np.cos(found.azimuth[0, carries]) ** 2).sum()
+    assert found.damping(20.0)[0, 0, 0] == pytest.approx(expected, rel=1e-6)
+
+
 def test_interference_presses_four_contacts_of_each_ball():
     """Each line by K (u cos α)^1.5 where the radius grows by u = −P_d/2."""
     found = TIGHT.loaded(radial=1e-3)
