@@ -77,6 +77,18 @@ def test_where_all_slips_a_ball_in_its_groove_rolls_purely_on_the_lines_of_heath
     assert found.work == pytest.approx(most, rel=0.005)
 
 
+def test_where_all_slips_heat_is_the_most_there_is_on_both_rings():
+    """A search that hardly ends: with so little friction the force changes line by line of cells."""
+    of = B6205.with_(inner_conformity=0.515, outer_conformity=0.54)
+    loaded = of.loaded(radial=200.0)
+    found = creepage_of(loaded)
+    turning = of.kinematics(25.0, contact_angle=0.0)
+    heat = friction_of_balls(loaded, found, turning, 0.001).heat
+    touching = np.isfinite(heat)
+    most = 0.001 * rolling_speed(of, turning) * found.sliding
+    np.testing.assert_allclose(heat[touching], most[touching], rtol=0.01)
+
+
 @pytest.mark.parametrize("spin", [0.0, 30.0])
 def test_heat_is_traction_times_slip_and_less_than_if_all_slipped(spin):
     found = in_groove(0.3, spin)
