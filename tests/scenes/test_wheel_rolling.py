@@ -15,6 +15,7 @@ from asperity.rolling.roll import roll_bodies
 from asperity.scenarios.scene import mean_square_transfer
 from asperity.spectra import band_levels, psd
 from asperity.speeds import SpeedCourse
+from asperity.store import Store
 from asperity.structures.body import Body
 from asperity.structures.moving_kernel import ZONES, HatResponse, moving_kernel
 from asperity.structures.rail_poles import rail_at
@@ -35,13 +36,19 @@ WHEEL = Wheel(MASS, LOAD)
 
 
 @pytest.fixture(scope="module")
-def kernel():
-    return moving_kernel(TRACK, SPEED, STEP)
+def kept(tmp_path_factory):
+    """Kernels and poles at the speeds that several tests pass."""
+    return Store(tmp_path_factory.mktemp("rails"))
 
 
-def roughness(duration):
+@pytest.fixture(scope="module")
+def kernel(kept):
+    return moving_kernel(TRACK, SPEED, STEP, cache=kept)
+
+
+def roughness(duration, seed=5):
     wavelengths, levels = (v[7:29] for v in cnossos.rail_roughness("iso3095"))
-    line = from_bands(round(SPEED * duration / 1e-3), 1e-3, wavelengths, levels, seed=5).heights
+    line = from_bands(round(SPEED * duration / 1e-3), 1e-3, wavelengths, levels, seed).heights
     return StateTexture.unfiltered(-line, 1e-3, -0.4 * SPEED)
 
 
@@ -81,28 +88,32 @@ def test_linear_contact_is_within_one_decibel_of_the_frequency_domain():
     assert np.abs(levels[0] - levels[1])[away].max() < 1.0
 
 
-def test_a_slow_run_up_on_a_rail_is_constant_speeds_band_by_band():
-    """40 to 56 m/s in 1.6 s: beside the frequency domain for the texture that is met, and beside 48 m/s."""
-    texture, levels = roughness(2.2), []
-    for speed in (SpeedCourse([0.0, 1.6], [40.0, 56.0]), 48.0):
+def test_a_slow_run_up_on_a_rail_is_constant_speeds_band_by_band(kept):
+    """48 to 56 m/s in 1.6 s: beside the frequency domain for the textures that are met, and 52 m/s."""
+    textures, levels = [roughness(2.2, seed) for seed in range(1, 5)], []
+    for speed in (SpeedCourse([0.0, 1.6], [48.0, 56.0]), 52.0):
         path = {"start": 0.0, "duration": 1.6, "settling": 0.4, "time_step": STEP, "positions": [0.0]}
-        rail = rail_at(TRACK, speed, STEP, [0.0])
-        assert len(rail.at_speeds) == (9 if speed != 48.0 else 1)
-        run = roll_bodies(rail, [Body.rigid(MASS, LOAD)], [linear(texture)], speed=speed, **path)
-        run = first_contact(run)
-        levels.append(in_bands(run.contact_force, texture, run, 4000, 160.0, 2500.0, speed=1.0)[1])
-        assert run.contact_force.mean() == pytest.approx(LOAD, rel=2e-3)
-    np.testing.assert_allclose(levels[0][0], levels[0][1], atol=0.46)
-    np.testing.assert_allclose(levels[0][0], levels[1][0], atol=0.34)
-    np.testing.assert_allclose(levels[1][0], levels[1][1], atol=0.57)
+        rail = rail_at(TRACK, speed, STEP, [0.0], cache=kept)
+        assert len(rail.at_speeds) == (5 if speed != 52.0 else 1)
+        power = 0.0
+        for texture in textures:
+            run = roll_bodies(rail, [Body.rigid(MASS, LOAD)], [linear(texture)], speed=speed, **path)
+            run = first_contact(run)
+            level = in_bands(run.contact_force, texture, run, 4000, 160.0, 2500.0, speed=1.0)[1]
+            power = power + 10.0 ** (level / 10.0) / len(textures)
+            assert run.contact_force.mean() == pytest.approx(LOAD, rel=2e-3)
+        levels.append(10.0 * np.log10(power))
+    np.testing.assert_allclose(levels[0][0], levels[1][0], atol=0.2)
+    for found, expected in levels:
+        np.testing.assert_allclose(found, expected, atol=0.52)
 
 
 @pytest.mark.parametrize(("scattered", "off"), [(True, 1e-6), (False, 1e-4)])
-def test_a_speed_that_hardly_changes_on_a_rail_is_a_constant_one(scattered, off):
+def test_a_speed_that_hardly_changes_on_a_rail_is_a_constant_one(kept, scattered, off):
     """Poles are fitted to both of its kernels, each within 5e-4: by a fifth of that forces may differ."""
     texture, forces = roughness(0.6), []
     for speed in (20.0, SpeedCourse([0.0, 0.1], [20.0, 20.0 * (1.0 + 1e-9)])):
-        rail = rail_at(TRACK, speed, STEP, [0.0, 2.5], scattered=scattered)
+        rail = rail_at(TRACK, speed, STEP, [0.0, 2.5], scattered=scattered, cache=kept)
         path = {"start": 0.0, "duration": 0.1, "settling": 0.05, "time_step": STEP, "positions": [0.0, 2.5]}
         run = roll_bodies(rail, [Body.rigid(MASS, LOAD)] * 2, [linear(texture)] * 2, speed=speed, **path)
         forces.append(run.contact_force)
@@ -158,17 +169,17 @@ def test_a_point_moves_with_the_contact_when_it_is_passed(kernel):
         passed(kernel, history, origin, [np.nan])
 
 
-@pytest.mark.parametrize("course", [([0.0, 0.4], [15.0, 25.0]), ([0.1, 0.25], [25.0, 15.0])])
-def test_a_rail_moves_as_by_superposition_at_fixed_points_while_the_speed_changes(course):
+@pytest.mark.parametrize("course", [([0.0, 0.32], [16.0, 24.0]), ([0.1, 0.22], [24.0, 16.0])])
+def test_a_rail_moves_as_by_superposition_at_fixed_points_while_the_speed_changes(kept, course):
     """Under wheels 2.5 m apart at 25 to 67 m/s²: kernels of constant speeds, beside those of no speed."""
-    speed, places, h = SpeedCourse(*course), np.array([0.0, 2.5]), 5e-5
-    rail = rail_at(TRACK, speed, h, places)
+    speed, places, h = SpeedCourse(*course), np.array([0.0, 2.5]), STEP
+    rail = rail_at(TRACK, speed, h, places, cache=kept)
     laws = [linear(roughness(1.2))] * 2
     path = {"start": 0.0, "duration": 0.4, "settling": 0.15, "time_step": h, "positions": places}
     run = roll_bodies(rail, [Body.rigid(MASS, LOAD)] * 2, laws, speed=speed, **path)
     settled = run.history.shape[1] - len(run.time)
     rolled = speed.covered(h * (np.arange(run.history.shape[1]) - settled))
-    points = np.arange(2.7, 7.0, 0.1)
+    points = np.arange(2.7, 7.0, 0.25)
     by_each = [
         passed_points(rail.kernel, force[None], at + rolled, points, settled)[0][0]
         for at, force in zip(places, run.history, strict=True)
