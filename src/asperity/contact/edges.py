@@ -14,6 +14,7 @@ slant of the edge on the grid. Curves hold 1/(1 + γ/w): it falls to zero with t
 sound.
 """
 
+from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -85,6 +86,7 @@ def check_edges(edges: Edges, half_space: "HalfSpace", shape: tuple[int, int]) -
         require(value == wanted, f"{name} of a contact with edges", repr(value), repr(wanted), remedy)
 
 
+@lru_cache(maxsize=1)  # a contact is solved with it, and looked at afterwards
 def softness_at(edges: Edges, modulus: float, hardness: float | None) -> Softness:
     """Find how cells at edges give way on a half-space of a contact modulus E* and a hardness, Pa."""
     softness, flow = np.zeros((2, *edges.distance.shape))

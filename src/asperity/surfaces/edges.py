@@ -79,16 +79,18 @@ class Edges:
         """Those of them that give way more than others, because an edge crosses them or is close."""
         return self.sound & (self.places < 0.5)
 
-    @property
+    @cached_property
     def shares(self) -> Array:
         """Shares of cells (rows, lines) that lie before the edge, as if that were straight."""
-        near, far = 0.5 * np.sort(self.sides(), axis=0)
+        found = np.asarray(self.distance > 0.0, dtype=float)
+        at = np.abs(self.places) < 0.5
+        near, far = 0.5 * np.sort(self.sides(at), axis=0)
         near = np.maximum(near, 1e-6 * far)
         share = np.zeros(far.shape)
         for sign, end in ((1, far + near), (-1, far - near), (-1, near - far), (1, -far - near)):
-            share += sign * np.maximum(self.distance + end, 0.0) ** 2
-        found = share / (8.0 * near * far)
-        return np.where(np.abs(self.places) < 0.5, found, (self.distance > 0.0).astype(float))
+            share += sign * np.maximum(self.distance[at] + end, 0.0) ** 2
+        found[at] = share / (8.0 * near * far)
+        return found
 
     def rearranged(self, rearrange: Callable[[Array], Array]) -> "Edges":
         """Edges with all fields rearranged alike, as some rows of them are."""
