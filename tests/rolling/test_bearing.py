@@ -9,7 +9,9 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from asperity.laws import HertzLaw, Linear
 from asperity.reduction.texture import StateTexture
-from asperity.rolling.bearing import BearingRings, roll_bearing
+from asperity.rolling import rest
+from asperity.rolling.bearing import INSTANTS, BearingRings, roll_bearing
+from asperity.rolling.rest import evaluated
 from asperity.speeds import SpeedCourse
 from asperity.structures.ball_bearing import BallBearing
 from asperity.structures.modal import Modal
@@ -59,6 +61,15 @@ def test_it_starts_as_the_static_solution_and_carries_the_load():
     assert run.inner_motion[0].mean() == pytest.approx(still.displacement[:, 0].mean(), rel=0.01)
     assert run.energy.residual < 1e-7
     assert run.unconverged_steps == 0
+
+
+def test_balls_come_to_rest_in_few_steps(monkeypatch):
+    """A step that had to be halved is not tried again at its whole length: laws are asked some 30 times."""
+    asked = []
+    monkeypatch.setattr(rest, "evaluated", lambda law, at: asked.append(at) or evaluated(law, at))
+    turned_by(duration=1e-4, settling=0.0)
+    laws, rests = 2 * B6205.balls, INSTANTS + 1
+    assert 10 < len(asked) / laws / rests < 40
 
 
 def test_shapes_that_follow_one_another_are_those_at_every_angle(monkeypatch):

@@ -21,7 +21,7 @@ from asperity.structures.body import Body
 
 Evaluation = Callable[[float], tuple[float, float]]
 """Force, N, and stiffness, N/m, of an approach, m."""
-FIRST_MOVE = 1e-6  # m, of the contacts; doubled until they are at rest
+FIRST_MOVE = 1e-6  # m, of the contacts
 LARGEST_MOVE = 1.0  # m
 ITERATIONS = 200
 TOLERANCE, STEPPED_TOLERANCE = 1e-9, 1e-5
@@ -53,8 +53,8 @@ def at_rest(
     shapes Φ (n, f) and are pressed by constant forces p₀ (f,). With q of these, y of the bodies and c of what
     yields the approaches are δ = −(u + Φ q + A y + Q c). At rest p₀ + Φᵀ F = 0, K y + p = Aᵀ F and c = Qᵀ F,
     which is where ½ yᵀKy + pᵀy − p₀ᵀq + ½ c² plus the energy of the contacts is least: steps of Newton's,
-    halved until they go down. The forces are exact to `relative` of their scale (n,), N. A
-    `ComputationError` says that nothing is at rest.
+    halved until they go down, and at most twice as long as the last. The forces are exact to `relative` of
+    their scale (n,), N. A `ComputationError` says that nothing is at rest.
     """
     moved, pressed = (np.zeros((len(displaced), 0)), np.zeros(0)) if free is None else free
     matrix, shapes = _coordinates(bodies, compliance, moved)
@@ -105,13 +105,13 @@ def equilibrium(
         if np.all(np.abs(firm * closer) <= relative * scale + firm * rounding):
             return x + move, force + firm * closer, approach + closer, stiffness
         move *= min(1.0, most / float(np.abs(closer).max()))
-        most = min(2.0 * most, LARGEST_MOVE)
         slope = float(gradient @ move)
         for _ in range(60):
             approach, force, stiffness, gradient = state(x + move)
             if float(gradient @ move) <= 0.5 * abs(slope):
                 break
             move, slope = 0.5 * move, 0.5 * slope
+        most = float(np.clip(2.0 * np.abs(shapes @ move).max(), FIRST_MOVE, LARGEST_MOVE))
         x = x + move
     raise ComputationError(
         f"the bodies do not come to rest on their contacts ({len(laws)}) at the start of the path: under "
