@@ -1,5 +1,6 @@
 """What data determine: directions in which they leave values open; intervals and correlations of the rest."""
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +16,8 @@ LEAST_SCALE = 1e-3
 """Uncertainties that the data scatter by at least: nothing that is computed is exact."""
 SHARED = 0.3
 """Part of a direction over its largest one, from which on a value takes part in it."""
+NEARLY = 0.9
+"""Part of the largest one, from which on another is as large: of these the last value is held."""
 IMPLAUSIBLE = 0.01
 """Probability of a sum of squares, below which the stated uncertainties are not those of the data."""
 
@@ -89,28 +92,28 @@ def left_out(left: Array, uncertainty: Array, freedom: int) -> float:
     return float(brentq(surplus, 0.0, float(np.sqrt(np.sum(left**2) / freedom)) + 1e-9))
 
 
-def open_direction(slopes: Array, spread: Spread) -> Open | None:
-    """The direction that slopes of residuals (n, p) determine least, if they leave it open; else None."""
+def open_direction(slopes: Array, spread: Spread, known: Collection[int] = ()) -> Open | None:
+    """The direction that slopes of residuals (n, p) determine least, if they leave it open; else None.
+
+    What is held of it is a value that is not among those `known` to differ from what it would be held at.
+    """
     if not slopes.shape[1]:
         return None
     _, sizes, directions = np.linalg.svd(slopes, full_matrices=True)
     sizes = np.append(sizes, np.zeros(len(directions) - len(sizes)))
-    direction, least = directions[-1], sizes[-1]
-    known = least > LEAST_RATIO * sizes[0] and sizes[0] > 0.0
-    number = _held(direction)
-    part = abs(direction[number])
-    half_width = spread.quantile * spread.scale / least * part if known else np.inf
-    if half_width <= WIDEST:
-        return None
-    shares = direction / direction[number]
-    others = {n: float(s) for n, s in enumerate(shares) if n != number and abs(s) >= SHARED}
-    return Open(number, others, float(half_width))
-
-
-def _held(direction: Array) -> int:
-    """Number of the value that is held: the largest part, of those that are nearly as large the last."""
-    parts = np.abs(direction)
-    return int(np.flatnonzero(parts >= 0.9 * parts.max())[-1])
+    for size, direction in zip(sizes[::-1].tolist(), directions[::-1], strict=True):
+        parts = np.abs(direction)
+        free = [n for n, part in enumerate(parts) if part >= SHARED * parts.max() and n not in known]
+        if not free:
+            continue
+        number = max(free, key=lambda n: (parts[n] >= NEARLY * parts[free].max(), n))
+        told = size > LEAST_RATIO * sizes[0] and sizes[0] > 0.0
+        half_width = spread.quantile * spread.scale / size * parts[number] if told else np.inf
+        if half_width > WIDEST:
+            shares = direction / direction[number]
+            others = {n: float(s) for n, s in enumerate(shares) if n != number and abs(s) >= SHARED}
+            return Open(number, others, float(half_width))
+    return None
 
 
 def covariance(slopes: Array, spread: Spread) -> Array:

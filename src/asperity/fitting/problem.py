@@ -1,6 +1,6 @@
 """What is left between what was measured and what a case predicts, at values of what is free."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -39,6 +39,8 @@ class Problem:
         Whether bands are resolved as in a report.
     beyond : float
         Standard deviation of what the case leaves out, dB, beside the uncertainty of the data.
+    chance : ndarray (n,), optional
+        Standard deviation of what is predicted, dB, by the chance of the one record that is run.
     of_case : str
         Digest of the case and its files.
     progress : callable
@@ -52,6 +54,7 @@ class Problem:
     free: tuple[Free, ...]
     fine: bool = True
     beyond: float = 0.0
+    chance: Array | None = None
     of_case: str = ""
     progress: Progress = lambda *_: None
     held: dict[str, Array] = field(default_factory=dict)
@@ -83,13 +86,14 @@ class Problem:
 
     @cached_property
     def of_data(self) -> Array:
-        """Standard deviations of the data alone (n,), dB."""
-        return np.concatenate(
+        """Standard deviations of the data (n,), dB, with the chance of the record beside which they stand."""
+        told = np.concatenate(
             [
                 np.tile(_uncertainty(each, of), 2 if np.iscomplexobj(each.values) else 1)
                 for each, of in zip(self.measured, self.observables, strict=True)
             ]
         )
+        return told if self.chance is None else np.hypot(told, self.chance)
 
     @property
     def stated(self) -> bool:
@@ -123,18 +127,31 @@ class Problem:
                             found[f"{each.entry.section}.{other}"] = None
         return found
 
-    def predicted(self, place: Array) -> list[Values]:
-        """What the case predicts for each measurement (n,) at a place."""
+    def _tried(self, place: Array) -> Iterator[tuple[Observable, Measured, TriedCase]]:
+        """Each measurement with the case at a place, under its conditions."""
         changes = self.changes(place)
         trials = dict[str, TriedCase]()
-        found = []
         for each, of in zip(self.measured, self.observables, strict=True):
             here = repr(sorted(content(each.conditions).items()))
             if here not in trials:
                 tried = {**changes, **each.conditions}
                 trials[here] = TriedCase(self.case, tried, self.fine, self.progress)
-            found.append(of.predict(trials[here], each))
-        return found
+            yield of, each, trials[here]
+
+    def predicted(self, place: Array) -> list[Values]:
+        """What the case predicts for each measurement (n,) at a place."""
+        return [of.predict(trial, each) for of, each, trial in self._tried(place)]
+
+    def chance_of_runs(self) -> Array:
+        """Standard deviation of what the case predicts as it is (n,), dB, by the chance of one record."""
+        return np.concatenate(
+            [
+                np.zeros(each.count)
+                if of.chance is None
+                else np.nan_to_num(of.chance(trial.collected, each), nan=0.0, posinf=0.0)
+                for of, each, trial in self._tried(self.start)
+            ]
+        )
 
     def left(self, place: Array) -> list[Array]:
         """Level of what was measured over what is predicted, of each measurement, dB."""

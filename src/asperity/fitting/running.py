@@ -2,7 +2,7 @@
 
 import os
 import warnings
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -217,7 +217,9 @@ def fitted(
     """Fit a case to measurements by what may change, as `fit` does."""
     case = with_choices_fixed(case)
     known, before = _known(case, measured, progress)
-    problem = Problem(case, known, chosen, of_case=case_key("fit", FORMAT, case), progress=progress)
+    chance = Problem(case, known, (), progress=progress).chance_of_runs()
+    of_case = case_key("fit", FORMAT, case)
+    problem = Problem(case, known, chosen, chance=chance, of_case=of_case, progress=progress)
     received = f"{count_of(len(chosen), 'free key')} and {count_of(problem.count, 'value')}"
     require(len(chosen) < problem.count, "fit", received, "more values than free keys", "Free fewer keys.")
     usual = 1 if problem.by_run else STARTS
@@ -227,23 +229,52 @@ def fitted(
     places = starts_within(problem.low, problem.high, problem.start, count, rough.residuals)
     problem, minima = _searched(problem, places, progress)
     problem.held.clear()  # those of runs are found once more, where the search has ended
-    while True:
-        best = minima.best
-        slopes = problem.slopes(minima.best.place)
-        ends = _pushed(problem, best, slopes)
-        inside = np.flatnonzero(ends == 0)
-        spread = _spread(problem, best, len(inside))
-        if (least := determined.open_direction(slopes[:, inside], spread)) is None:
-            return _told(case, problem, before, minima, left_open)
-        open_names = [problem.free[number].name for number in inside]
-        left_open.append(_undetermined(problem.free[inside[least.number]], least, open_names))
-        problem = problem.without(int(inside[least.number]))
-        if not problem.free:
+    contradicted = set[str]()
+    while (least := _least_determined(problem, minima.best, contradicted)) is not None:
+        places = [np.delete(minima.best.place, least.number)]
+        places += [] if problem.by_run else [np.delete(problem.start, least.number)]
+        fewer, held = _searched(problem.without(least.number), places, progress)
+        left = held.best.residuals * fewer.uncertainty / problem.uncertainty
+        if float(left @ left) - minima.best.square > least.allowed:
+            contradicted.add(problem.free[least.number].name)
+            continue
+        left_open.append(least.words)
+        if not fewer.free:
             received = f"data that leave every free key open ({'; '.join(each.words for each in left_open)})"
             raise InputError("fit", received, "data that tell one of them")
-        places = [np.delete(best.place, inside[least.number])]
-        places += [] if problem.by_run else [problem.start]
-        problem, minima = _searched(problem, places, progress)
+        problem, minima = fewer, held
+    return _told(case, problem, before, minima, left_open)
+
+
+@dataclass(frozen=True)
+class _Least:
+    """A key that data leave open, unless they contradict the value that the case has of it."""
+
+    number: int
+    words: Undetermined
+    allowed: float  # by which the sum of squares may rise where it is held
+
+
+def _least_determined(problem: Problem, best: Optimum, contradicted: Collection[str]) -> _Least | None:
+    """The key that is left open most, but for those whose value in the case the data contradict.
+
+    Where they contradict all of those between which they cannot tell at all, one is held nevertheless.
+    """
+    slopes = problem.slopes(best.place)
+    inside = np.flatnonzero(_pushed(problem, best, slopes) == 0)
+    spread = _spread(problem, best, len(inside))
+    names = [problem.free[number].name for number in inside]
+    known = [number for number, name in enumerate(names) if name in contradicted]
+    allowed = (spread.quantile * spread.scale) ** 2
+    found = determined.open_direction(slopes[:, inside], spread, known)
+    if found is None:
+        found = determined.open_direction(slopes[:, inside], spread)
+        allowed = np.inf
+        if found is None or np.isfinite(found.half_width):
+            return None
+    number = int(inside[found.number])
+    others = tuple((names[other], by) for other, by in found.others.items())
+    return _Least(number, Undetermined(problem.free[number], others), allowed)
 
 
 def _known(
@@ -288,7 +319,7 @@ def _searched(problem: Problem, starts: Sequence[Array], progress: Progress) -> 
     large as usual; it is found at the end, from what is left.
     """
     rough = replace(problem, fine=False, beyond=USUALLY_LEFT_OUT if problem.stated else 0.0)
-    words = f"search for {count_of(len(problem.free), 'key')}"
+    words = f"search for {count_of(len(problem.free), 'key')}" if problem.free else "the case as it is"
     found = list[Optimum]()
     for number, start in enumerate(starts if len(starts) > 1 else ()):
         progress(number, len(starts) + 1, words)
@@ -309,8 +340,9 @@ def _searched(problem: Problem, starts: Sequence[Array], progress: Progress) -> 
 
 def _spread(problem: Problem, best: Optimum, free: int) -> determined.Spread:
     """Scatter of the data about the best values, of which so many are free."""
-    read = problem.stated and any(each.records > 1 for each in problem.measured)
-    believed = problem.stated and not problem.beyond and not read
+    repeated = problem.stated and any(each.records > 1 for each in problem.measured)
+    believed = problem.stated and not problem.beyond and not repeated
+    read = repeated or bool(np.any(problem.chance))
     return determined.spread_of(best.square, problem.count - free, believed=believed, read=read)
 
 
@@ -343,11 +375,6 @@ def _pushed(problem: Problem, best: Optimum, slopes: Array) -> NDArray[np.int_]:
     size = np.sum(slopes**2, axis=0)
     gain = gradient**2 / np.maximum(size, np.finfo(float).tiny) / spread.scale**2
     return np.where(gain > 1.0, ends, 0)
-
-
-def _undetermined(held: Free, least: determined.Open, names: Sequence[str]) -> Undetermined:
-    """A direction that is open, in words of the keys, of which one is held."""
-    return Undetermined(held, tuple((names[number], by) for number, by in least.others.items()))
 
 
 def _told(
