@@ -10,6 +10,7 @@ from scipy.io import wavfile
 
 from asperity import RollerBearing
 from asperity.case.cases import as_case
+from asperity.written_numbers import rounded
 from command_line import call
 from faulty_signals import faulty_signal
 
@@ -62,6 +63,27 @@ def test_of_a_file_and_of_a_case_the_bearing_is_on_rollers(tapered, tmp_path):
     said = call("bearing", str(path)).stdout
     assert "11 rollers" in said
     assert "under 1000 N radial" in said
+
+
+def test_a_tilted_ring_is_that_of_the_static_solution(tmp_path):
+    """Its loads and the moment that holds it; there is none on balls, nor in a table."""
+    said = " ".join(call(*LOADED, "--tilt", "1.5 mrad").output.split())
+    found = RollerBearing.named("NU205").loaded(2000.0, tilt=1.5e-3, speed=30.0)
+    moment = f"{found.moment[:, 0].mean():.4g}"
+    assert f"the inner ring is held at a tilt of 1.5 mrad by a moment of {moment} N m." in said
+    told = json.loads(call(*LOADED, "--tilt", "1.5 mrad", "--json").stdout)
+    assert told["balls"]["inner_load"] == pytest.approx(found.inner_load[0].tolist())
+    assert told["balls"]["inner_pressure"] == pytest.approx(found.inner_pressure[0].tolist())
+    sheet = tmp_path / "tilted.html"
+    call(*LOADED, "--tilt", "3 mrad", "--sheet", str(sheet))
+    found = RollerBearing.named("NU205").loaded(2000.0, tilt=3e-3, speed=30.0)
+    page = " ".join(sheet.read_text(encoding="utf-8").split())
+    assert f"{rounded(found.inner_pressure.max() / 1e9)} GPa, contact angle" in page
+    assert "0 N axially, tilted by 3 mrad, at 1800 1/min: heaviest roller" in page
+    refused = call(*LOADED, "--tilt", "1 mrad", "--table", "k.csv", code=2).stderr
+    assert "--table: received a tilt with it; allowed: a ring that is held without tilt" in refused
+    assert "tilt" in call("bearing", "6205", "--radial", "1 kN", "--tilt", "1 mrad", code=2).stderr
+    assert "touch the inner ring" in call("bearing", "NU205", "--tilt", "2 mrad").stdout  # without a load
 
 
 def test_films_are_those_of_lines():

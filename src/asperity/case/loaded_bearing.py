@@ -53,6 +53,17 @@ class LoadKeys(Section):
         carried = self.radial + self.axial + self.bearing.preload
         return carried > 0.0 or self.bearing.radial_clearance < 0.0
 
+    def loaded(self, share: float = 1.0) -> Any:
+        """The bearing under a share of its load, the preload in it."""
+        preload = self.bearing.preload
+        axial = self.axial if share == 1.0 else max(share * (self.axial + preload) - preload, 0.0)
+        return self.bearing.loaded(share * self.radial, axial, speed=self.speed or 0.0, **self.held)
+
+    @property
+    def held(self) -> dict[str, Any]:
+        """How the inner ring is held beside its load."""
+        return {}
+
 
 class BearingKeys(LoadKeys, BearingGeometry):
     """A ball bearing and what it carries."""
@@ -61,7 +72,23 @@ class BearingKeys(LoadKeys, BearingGeometry):
 class RollerBearingKeys(LoadKeys, RollerGeometry):
     """A roller bearing and what it carries."""
 
+    tilt: float = key(
+        Quantity("rad"),
+        "0 mrad",
+        "tilt of the inner ring in the plane of the radial load",
+        "1e-9 rad to 0.1 rad: shafts tilt less",
+    )
     lubricant: RollerLubricantKeys = section(RollerLubricantKeys, "the oil: how thick its films are")
+
+    @property
+    def is_loaded(self) -> bool:
+        """Whether a load, a tilt or an interference presses what rolls."""
+        return super().is_loaded or self.tilt != 0.0
+
+    @property
+    def held(self) -> dict[str, Any]:
+        """How the inner ring is held beside its load."""
+        return {"tilt": self.tilt}
 
 
 def _read(keys: Mapping[str, Any], source: str) -> LoadKeys:

@@ -34,7 +34,7 @@ TOLD = ("balls", "displacement", "stiffness", "imbalance", "films", "tones", "sp
         "band", "lines", "faults", "confidence", "resolution", "turns", "doubts", "signals", "verdict",
         "catalogue", "tolerances")  # fmt: skip
 """Names of what is said to programs."""
-OPTIONS = ("radial", "axial", "speed", "clearance", "contact_damping")
+OPTIONS = ("radial", "axial", "tilt", "speed", "clearance", "contact_damping")
 """Keys of a bearing and its load that are options, too."""
 OIL = ("oil", "temperature")
 """Those of its lubricant."""
@@ -174,7 +174,7 @@ def _carried(keys: LoadKeys, picture: Path | None) -> dict[str, Any]:
     doubt_speed(keys.bearing, speed)
     if not (keys.is_loaded or keys.lubricant.found or picture):
         return _rolling(keys.bearing, speed)
-    found = keys.bearing.loaded(keys.radial, keys.axial, speed=speed)
+    found = keys.loaded()
     load = f"{rounded(found.radial, 4)} N radial, {rounded(found.axial, 4)} N axial"
     turning = keys.bearing.kinematics(speed or 1.0, contact_angle=found.contact_angle)
     at_rest = tree(static_group(found, turning))
@@ -188,7 +188,7 @@ def _carried(keys: LoadKeys, picture: Path | None) -> dict[str, Any]:
     if isinstance(found, LoadedRollers):
         heaviest = np.unravel_index(int(found.inner_load.argmax()), found.inner_load.shape)
         carrying = f"{rounded(1e3 * found.carrying_length[heaviest])} of {rounded(1e3 * of.roller_length)} mm"
-        say(f"Of the roller that carries most {carrying} touch the inner ring; rings are held against tilt.")
+        say(f"Of the roller that carries most {carrying} touch the inner ring; {_tilted(found)}.")
     elif isinstance(found, LoadedBearing) and of.arches:
         _say_flanks(found, turning)
     films = say_films(keys, found)
@@ -203,6 +203,15 @@ def _carried(keys: LoadKeys, picture: Path | None) -> dict[str, Any]:
         balls |= {name: getattr(found, name)[0] for name in FLANKS}
     ring = {"displacement": found.displacement, "stiffness": found.stiffness, "imbalance": found.imbalance}
     return {"balls": balls, **ring, "films": films, "tones": tones}
+
+
+def _tilted(found: LoadedRollers) -> str:
+    """How the inner ring is held against tilt, in words."""
+    tilt = float(found.displacement[0, 3])
+    if not tilt:
+        return "rings are held against tilt"
+    moment = rounded(float(found.moment[:, 0].mean()), 4)
+    return f"the inner ring is held at a tilt of {rounded(1e3 * tilt, 4)} mrad by a moment of {moment} N m"
 
 
 def _say_flanks(found: LoadedBearing, turning: Kinematics) -> None:

@@ -26,7 +26,7 @@ def say_tolerances(source: str, options: Mapping[str, Any], limits: str, outer_m
     keys = read_bearing(source, options)
     if not keys.speed:
         raise InputError("speed", "none", "a speed greater than 0", "Give it, as in --speed '1800 1/min'.")
-    found = keys.bearing.loaded(keys.radial, keys.axial, speed=keys.speed)
+    found = keys.loaded()
     element = keys.bearing.ELEMENT
     highest = math.inf
     if outer_mass is not None:

@@ -376,6 +376,9 @@ SURFACE = [
 BEARING = [
     click.Option(["--radial"], metavar="FORCE", help="Radial load on the inner ring, as '100 N'."),
     click.Option(["--axial"], metavar="FORCE", help="Axial load on it."),
+    click.Option(
+        ["--tilt"], metavar="ANGLE", help="Tilt of an inner ring on rollers in the plane of the radial load."
+    ),
     click.Option(["--speed"], metavar="SPEED", help="Of the ring that turns, as '1800 1/min'."),
     click.Option(["--clearance"], metavar="LENGTH", help="Diametral clearance, as '10 um'."),
     click.Option(["--oil"], metavar="GRADE", help="Oil in the contacts, as 'ISO VG 68': films."),

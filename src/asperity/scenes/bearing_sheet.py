@@ -63,12 +63,14 @@ def bearing_sheet(name: str, keys: LoadKeys, run: DataTree | None = None) -> str
     """
     speed = float(keys.speed or 0.0)
     of = keys.bearing
-    found = of.loaded(keys.radial, keys.axial, speed=speed)
+    found = keys.loaded()
     turning = of.kinematics(speed or 1.0, contact_angle=found.contact_angle)
     at_rest = tree(static_group(found, turning))
     load = f"{rounded(found.radial, 4)} N radially, {rounded(found.axial, 4)} N axially"
     at = f" at {rounded(60.0 * speed, 5)} 1/min" if speed else ""
-    blocks: list[Block] = [_geometry(keys), _stiffness(keys, speed), _tones(found, speed)]
+    if tilt := keys.held.get("tilt"):
+        load += f", tilted by {rounded(1e3 * tilt, 4)} mrad,"
+    blocks: list[Block] = [_geometry(keys), _stiffness(keys), _tones(found, speed)]
     if run is not None and (bands := data.unless_missing(bands_table, run)):
         blocks.append(bands)
     blocks.append(ball_contacts_table(at_rest))
@@ -113,22 +115,20 @@ def _geometry(keys: LoadKeys) -> ReportTable:
     return table("geometry", "Geometry", columns, note)
 
 
-def _carried(keys: LoadKeys, speed: float) -> Iterator[tuple[float, LoadedBearing]]:
+def _carried(keys: LoadKeys) -> Iterator[tuple[float, LoadedBearing]]:
     """The bearing at shares of its load, as far as it carries them."""
-    preload = keys.bearing.preload
     with PhysicsWarning.ignored():
         for factor in FACTORS:
             try:
-                axial = max(factor * (keys.axial + preload) - preload, 0.0)
-                yield factor, keys.bearing.loaded(factor * keys.radial, axial, speed=speed)
+                yield factor, keys.loaded(factor)
             except InputError:
                 if factor > 1.0:
                     return
                 continue
 
 
-def _stiffness(keys: LoadKeys, speed: float) -> PageFigure:
-    shares, found = zip(*_carried(keys, speed), strict=True)
+def _stiffness(keys: LoadKeys) -> PageFigure:
+    shares, found = zip(*_carried(keys), strict=True)
     loads = np.hypot(keys.radial, keys.axial + keys.bearing.preload) * np.array(shares)
     means = np.array([np.diagonal(each.stiffness, axis1=1, axis2=2).mean(axis=0) for each in found])
     ways = dict(enumerate(DIRECTIONS)) if keys.radial else {0: "radially", 2: DIRECTIONS[2]}
