@@ -81,11 +81,6 @@ class RollerBearingKeys(LoadKeys, RollerGeometry):
     lubricant: RollerLubricantKeys = section(RollerLubricantKeys, "the oil: how thick its films are")
 
     @property
-    def is_loaded(self) -> bool:
-        """Whether a load, a tilt or an interference presses what rolls."""
-        return super().is_loaded or self.tilt != 0.0
-
-    @property
     def held(self) -> dict[str, Any]:
         """How the inner ring is held beside its load."""
         return {"tilt": self.tilt}

@@ -172,6 +172,8 @@ def _carried(keys: LoadKeys, picture: Path | None) -> dict[str, Any]:
             "speed", "none of a bearing with oil", "that at which its films are, as '1800 1/min'"
         )
     doubt_speed(keys.bearing, speed)
+    if keys.held.get("tilt") and not keys.is_loaded:
+        raise InputError("tilt", "a tilt without a load", "a load beside it, as --radial '1 kN'")
     if not (keys.is_loaded or keys.lubricant.found or picture):
         return _rolling(keys.bearing, speed)
     found = keys.loaded()
