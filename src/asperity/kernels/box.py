@@ -165,7 +165,7 @@ def foundation_approach(
     return approach
 
 
-@compiled(**LOOP, **REASSOCIATE)
+@compiled(**CALLED, **REASSOCIATE)
 def _below(gap: NDArray, approach: float) -> tuple[float, float, float]:
     """Number and sum of the gaps below an approach, and the lowest."""
     count = 0.0

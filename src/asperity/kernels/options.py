@@ -5,24 +5,29 @@ times the arithmetic. Functions that allocate nothing do not need to count (``_n
 loop nothing is left of the calls (``forceinline``).
 
 Entries take the compiler longer than most kernels: numba makes two, for Python and for C, and unpacks
-every array of every named tuple in them. So only what Python calls has one, and none has one for C.
+every array of every named tuple in them. So only what Python calls has one, and none has one for C. What
+has none is optimised, and made machine code, as part of what has one alone: numba would do both at every
+kernel, for it and for all that it calls. Python looks for no garbage meanwhile, which took a third of the
+time before LLVM's.
 
 What numba would keep are pickles, and machine code that is run as it is. So only files are read that are
 as they were written, by their seal, in a folder that nobody but the user can write to; a file is named by all
 that it depends on. What is damaged, incomplete or of another version counts as missing, and is compiled anew.
 
-For this `_nrt`, `forceinline`, the options without entries, `_cache` of a kernel and the parts of a
-compilation are needed, which numba does not document. They are tested with numba 0.60 to 0.68: the oldest
-that is allowed and the newest there is. Where one is missing plain `numba.njit` serves, which a warning says.
+For this `_nrt`, `forceinline`, the options without entries, `_cache` of a kernel, the parts of a
+compilation and the steps of a library are needed, which numba does not document. They are tested with numba
+0.60 to 0.68: the oldest that is allowed and the newest there is. Where one is missing plain `numba.njit`
+serves, which a warning says.
 """
 
+import gc
 import hashlib
 import pickle
 import re
 import sys
 import warnings
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
@@ -51,11 +56,13 @@ UNCHECKED: dict[str, Any] = {"error_model": "numpy"}
 """Divides without a look at the divisor: nothing leaves a loop then, which may become one of vectors."""
 DOCUMENTED = ("error_model", "fastmath", "inline", "nogil")
 HIDDEN = ("_nrt", "forceinline", "no_cpython_wrapper", "no_cfunc_wrapper")
+STEPS = ("_optimize_final_module", "_finalize_final_module", "_finalize_dynamic_globals")
 
 
 try:
     from numba.core.caching import NullCache
-    from numba.core.compiler import CompileResult
+    from numba.core.codegen import JITCodeLibrary
+    from numba.core.compiler import Compiler, CompileResult
     from numba.core.cpu import CPUTargetOptions
     from numba.core.registry import CPUDispatcher
     from numba.core.runtime.nrt import rtsys
@@ -64,9 +71,11 @@ try:
     PLAIN = not all(
         [hasattr(CPUTargetOptions, name) for name in HIDDEN]
         + [hasattr(CompileResult, name) for name in ("_reduce", "_rebuild")]
+        + [hasattr(JITCodeLibrary, name) for name in STEPS]
     )
 except ImportError:
-    CPUDispatcher, NullCache, PLAIN = object, object, True  # type: ignore[assignment,misc]
+    CPUDispatcher = NullCache = Compiler = JITCodeLibrary = object  # type: ignore[assignment,misc]
+    PLAIN = True
 if PLAIN:
     warnings.warn(
         f"numba {version('numba')} lacks what asperity needs to keep compiled functions: every start "
@@ -74,6 +83,52 @@ if PLAIN:
         RuntimeWarning,
         stacklevel=2,
     )
+
+
+@contextmanager
+def _garbage_left() -> Iterator[None]:
+    """Let Python look for no garbage meanwhile."""
+    looking = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if looking:
+            gc.enable()
+
+
+class _Compiler(Compiler):
+    """Numba's compiler, of a kernel with an entry."""
+
+    def compile_extra(self, function: Callable[..., Any]) -> Any:
+        """Compile a function."""
+        with _garbage_left():
+            return super().compile_extra(function)
+
+
+class _InnerCompiler(_Compiler):
+    """That of a kernel without one."""
+
+    def compile_extra(self, function: Callable[..., Any]) -> Any:
+        """Compile a function, as far as others need it."""
+        self.state.library = _Part(self.state.targetctx.codegen(), function.__qualname__)
+        return super().compile_extra(function)
+
+
+class _Part(JITCodeLibrary):
+    """Code that is part of other code, where it is optimised and made machine code."""
+
+    class codegen:
+        """What numba hands the environment of machine code to: here is none."""
+
+        set_env = staticmethod(lambda *_: None)
+
+    def _optimize_final_module(self) -> None:
+        pass
+
+    def _finalize_final_module(self) -> None:
+        self._finalize_dynamic_globals()
+        self._finalized = True
 
 
 class _Inner(CPUDispatcher):
@@ -95,8 +150,10 @@ def compiled(**options: Any) -> Callable[[Callable[..., Any]], Any]:
         return njit(**{name: value for name, value in options.items() if name in DOCUMENTED})
 
     def decorate(function: Callable[..., Any]) -> Any:
-        kernel: Any = njit(**options | {"no_cfunc_wrapper": True})(function)
-        if "no_cpython_wrapper" in options or options.get("inline") == "always":
+        inner = "no_cpython_wrapper" in options
+        using = _InnerCompiler if inner else _Compiler
+        kernel: Any = njit(**options | {"no_cfunc_wrapper": True}, pipeline_class=using)(function)
+        if inner or options.get("inline") == "always":
             kernel.__class__ = _Inner
         if keep:
             kernel._cache = Kept(function)  # what ``cache=True`` would set

@@ -382,7 +382,7 @@ def continue_pressure(
             start[i, j] = 0.0
 
 
-@compiled(**LOOP, nogil=True)
+@compiled(**CALLED, nogil=True)
 def continue_rolling(
     last: NDArray, before: NDArray, stride: int, stride_before: int, cap: float, start: NDArray
 ) -> None:
