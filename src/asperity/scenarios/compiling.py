@@ -29,7 +29,7 @@ BESIDE = (
 """What a second process does: half of all compilation, so that a first demo takes two thirds of the time."""
 PATIENCE = 300.0  # s that it is waited for
 ROLLING = "asperity.kernels.stepping.roll_prepared"
-ROLLING_TIME, CONTACT_TIME = 14.0, 21.0
+ROLLING_TIME, CONTACT_TIME = 9.0, 13.0
 """Processor times of compiling what rolls, and the contact, s, at a pace of one."""
 
 
