@@ -1,12 +1,15 @@
 """Kept kernels: verified before use, dropped with their version; no failure where they cannot be kept."""
 
+import gc
 import importlib.util
 import os
 import subprocess
 import sys
 import warnings
 
+import numba
 import pytest
+from numba.core import event
 
 from asperity import store
 from asperity.kernels import options
@@ -185,3 +188,40 @@ def test_without_private_names_of_numba_plain_kernels_serve_and_that_is_told(fol
     assert told.startswith("5.0 numba")
     assert "lacks what asperity needs to keep compiled functions" in told
     assert not files(folder)
+
+
+def test_what_only_kernels_call_is_machine_code_inside_of_them_alone(folder, module):
+    kernels, *_ = fresh(module)
+    for part in (kernels.inlined, kernels.called):
+        (each,) = part.overloads.values()
+        engine = kernels.calling.overloads[each.signature.args].library.codegen._engine
+        assert not engine.is_symbol_defined(each.fndesc.mangled_name)
+
+
+class Looking(event.Listener):
+    """Whether Python looks for garbage at each step of a compilation."""
+
+    def __init__(self):
+        self.seen = []
+
+    def on_start(self, event):
+        self.seen.append(gc.isenabled())
+
+    def on_end(self, event):
+        pass
+
+
+@pytest.mark.parametrize("looking", [True, False])
+def test_python_looks_for_no_garbage_while_it_compiles_and_then_as_before(folder, module, looking):
+    (gc.enable if looking else gc.disable)()
+    try:
+        with event.install_listener("numba:run_pass", Looking()) as listener:
+            fresh(module)
+        assert listener.seen
+        assert not any(listener.seen)
+        assert gc.isenabled() == looking
+        with pytest.raises(numba.TypingError):
+            options.compiled(**options.LOOP)(lambda x: x.nothing)(1.0)
+        assert gc.isenabled() == looking
+    finally:
+        gc.enable()
