@@ -196,3 +196,14 @@ def test_a_way_that_a_law_does_not_know_is_refused_before_anything_rolls():
             progress=lambda *done: told.append(done),
         )  # fmt: skip
     assert not told
+
+
+@pytest.mark.filterwarnings("ignore::asperity.errors.CoarseSamplingWarning")
+def test_approaches_of_a_law_are_without_what_a_softened_contact_yields():
+    law = HertzLaw(2e11, rough(1e-7, 1e-4, -0.01))
+    path = {"speed": 1.0, "start": 0.05, "duration": 0.01, "time_step": 2e-5, "positions": [0.0]}
+    run = roll_bodies(None, [Body.rigid(0.02, 5.0)], [law], **path)
+    yielded = run.softening[0] * run.contact_force[0]
+    assert yielded.max() > 0.05 * np.ptp(run.relative_displacement)
+    seen = run.relative_displacement[0] - yielded
+    assert_allclose(run.visited, [[seen.min(), seen.max()]], rtol=1e-12)

@@ -149,15 +149,6 @@ def shapes_at_contacts(ground: Ground, system: System) -> Array:
     return np.hstack([ground.shapes, flexible.reshape(n, -1)])
 
 
-def evaluations(prepared: Sequence[Prepared | SteppedLaw], dampers: Array) -> tuple[list[Evaluation], float]:
-    """Laws at the start with forces of dampers (n,), N, and to what all are exact, relative to the loads."""
-    looked_up = all(isinstance(law, Prepared) for law in prepared)
-    laws: list[Evaluation] = [
-        partial(evaluated, *each) for each in zip(prepared, dampers.tolist(), strict=True)
-    ]
-    return laws, TOLERANCE if looked_up else STEPPED_TOLERANCE
-
-
 def set_down(
     ground: Ground,
     bodies: Sequence[Body],
@@ -248,7 +239,9 @@ def _at_rest(
     constant = np.pad(system.constant, (0, len(softness) - len(system.constant)))
     free = shapes.any(axis=0) & (system.stiffness == 0.0) & constant.any()
     compliance = ground.yields + (shapes * softness) @ shapes.T + np.diag(system.softening)
-    laws, relative = evaluations(prepared, dampers)
+    laws = [partial(evaluated, *each) for each in zip(prepared, dampers.tolist(), strict=True)]
+    looked_up = all(isinstance(law, Prepared) for law in prepared)
+    relative = TOLERANCE if looked_up else STEPPED_TOLERANCE
     force = np.concatenate([body.static_loads for body in bodies])
     pressed = shapes @ (softness * constant)
     displaced = pressed
