@@ -59,6 +59,11 @@ def test_a_line_as_it_is_exported(read, head, form):
     assert line.spacing == pytest.approx(0.25e-6)
 
 
+def test_heights_in_mils_are_thousandths_of_an_inch(read):
+    line = read("x (um),z (mil)\n" + "".join(f"{x:.2f},{z / 25.4:.15e}\n" for x, z in zip(X, Z, strict=True)))
+    np.testing.assert_allclose(line.heights, 1e-6 * Z, rtol=1e-12)
+
+
 def test_decimal_commas_in_quotes_and_alone(read):
     quoted = rows('"{x:.2f}"@"{z:.6f}"').replace(".", ",").replace("@", ",")
     np.testing.assert_allclose(read('"x (um)","z (um)"\n' + quoted).heights, 1e-6 * Z, atol=1e-15)

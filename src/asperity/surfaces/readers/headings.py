@@ -329,10 +329,14 @@ def _quantity(number: str, unit: str) -> float:
     return value
 
 
+OWN_NAMES = dict.fromkeys(("Å", "\u212b", "å", "A"), 1e-10) | dict.fromkeys(("mil", "mils", "MIL"), 25.4e-6)
+"""Lengths, m, whose names elsewhere are none, or mean something else."""
+
+
 def length_named(unit: str) -> float:
     """Length, m, of a unit that a heading names, as instruments spell it."""
-    if unit in ("Å", "\u212b", "å", "A"):  # by its letter, which the unit library does not take
-        return 1e-10
+    if unit in OWN_NAMES:
+        return OWN_NAMES[unit]
     try:
         spelt = unit.lower().replace("mikro", "micro").replace("è", "e").replace("ö", "o")
         return factor(unit if len(unit) <= 3 else spelt, "m")
