@@ -10,7 +10,7 @@ import pytest
 from asperity.case.cases import read_case
 from asperity.scenes.measured import HammerTest
 from asperity.structures.track import Track
-from command_line import call
+from command_line import call, words_of
 
 CASE = """\
 kind = "wheel-on-rail"
@@ -60,6 +60,12 @@ def test_what_is_doubtful_of_the_case_is_said_before_it_is_fitted(rates):
     said = call(*FIT, "--json")
     assert f"Warning: {doubt}" in said.stderr
     assert {"grade": "warning", "message": doubt} in json.loads(said.stdout)["warnings"]
+
+
+def test_a_case_that_no_run_takes_is_fitted_to_what_its_track_alone_decides(rates):
+    Path("track.toml").write_text(f"{CASE}[contact]\nwindow = '8 mm'\n")
+    assert "contact.window: received 8" in words_of(call("check", "track.toml", code=2).stderr)
+    assert json.loads(call(*FIT, "--json").stdout)["warnings"] == []
 
 
 def test_the_same_fit_replaces_its_own_files_and_no_others(rates):

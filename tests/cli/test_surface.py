@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from asperity.surfaces.readers import read_surface
 from command_line import call, words_of
 
 HINTS = ("--height-unit", "um", "--pixel", "2 um")
@@ -230,7 +231,9 @@ def test_numbers_of_a_text_are_never_held_twice(columns):
     digits = np.random.default_rng(0).integers(0, 10, (4_000_000 // columns, columns))
     lines = [b" ".join(row) for row in digits.astype("S1")]
     Path("many.txt").write_bytes(b"\n".join(lines))
-    Path("few.txt").write_bytes(b"\n".join(lines[:10_000]))
+    Path("few.txt").write_bytes(b"\n".join(lines[:20_000]))
+    few = read_surface("few.txt", height_unit="nm", pixel="1 um").heights
+    np.testing.assert_array_equal(few.reshape(-1, columns), 1e-9 * digits[:20_000])
     told = subprocess.run([sys.executable, "-c", READING], capture_output=True, text=True, check=True)
     assert float(told.stdout) < 2.5
 

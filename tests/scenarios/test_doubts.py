@@ -16,6 +16,10 @@ from asperity.reference.railways import TRACKS
 from asperity.running import prepare_case
 
 BALL, BEARING = small_cases.BALL | {"settling": "50 ms"}, small_cases.BEARING
+BODIES = small_cases.BODIES | {"laws": ["linear"], "settling": "50 ms"}
+BOGIE = {"type": "bogie", "mass": "0.5 kg", "masses": ["4 kg"], "springs": ["20 kN/m"], "distance": "100 mm"}
+CHAIN = {"type": "chain", "mass": "0.5 kg", "masses": ["0.1 kg", "4 kg"], "load": "60 N"}
+CHAIN |= {"springs": ["20 kN/m", "100 N/m"], "dampers": ["5 N s/m", "5 N s/m"]}
 WHEEL = small_cases.HEARD | {"kind": "wheel-on-rail", "laws": ["hertz"], "surface": {"smooth": True}}
 
 
@@ -70,6 +74,15 @@ def test_a_device_on_which_nothing_was_ever_run_is_told(monkeypatch):
             BEARING | {"fault": BEARING["fault"] | {"width": "18 mm"}},
             "fault.width = 18 mm: balls have a diameter of 7.9",
         ),
+        (
+            BEARING | {"fault": [BEARING["fault"], BEARING["fault"] | {"angle": "90 deg", "depth": "50 nm"}]},
+            r"fault\[2\].depth = 0.05 um: dents, pits and spalls have 0.5 um to 10 mm",
+        ),
+        (BODIES | {"body": BOGIE | {"load": "10 N"}}, "body.load = 10 N: .* weighs 24.5 N"),
+        (
+            BODIES | {"body": CHAIN},
+            "body.springs = 100 N/m: the mass above it presses it down by 0.392 m",
+        ),
         (BEARING | {"laws": ["linear"]}, "linear: up to 7 of 9 balls carry nothing, and there it pulls"),
         (BEARING | {"balls": {"roughness": "0.02 nm"}}, "balls.roughness = 0.02 nm"),
         (BEARING | {"time_step": "20 us"}, "the resonance of the most loaded ball .* time steps in a period"),
@@ -78,6 +91,13 @@ def test_a_device_on_which_nothing_was_ever_run_is_told(monkeypatch):
 def test_a_size_in_a_wrong_unit_is_doubted_with_what_it_is_beside(keys, words):
     told = doubts(as_case(keys))
     assert any(re.search(words, each) for each in told), told
+
+
+def test_half_the_weight_of_a_bogie_is_on_each_of_its_contacts():
+    """4 kg on two wheels of 0.5 kg: half of 24.5 N is less than 15 N, half of 44 N is more."""
+    assert not [
+        each for each in doubts(as_case(BODIES | {"body": BOGIE | {"load": "15 N"}})) if "load" in each
+    ]
 
 
 OF_A_TRACK = {

@@ -140,9 +140,10 @@ HARMLESS_SMALL = {
         inner_raceway.amplitudes fault.burr fault.rim fault.rim_width""",
     "a place or an angle, of which any is legal": """
         surface.direction surface.lay ball.flat_position beam.sensors structure.sensors track.points
-        sideways.contact_place sideways.wheel_shift sensors fault.angle fault.offset""",
+        wheel-on-rail:start sideways.contact_place sideways.wheel_shift sensors fault.angle fault.offset""",
     "a number that something is called by, or drawn from": "seed surface.index track.scatter_seed",
     "digits that are asked for": "numerics.rtol numerics.force_accuracy",
+    "a bearing begins as it turns, not at rest": "ball-bearing:settling roller-bearing:settling",
     "an exponent, as any has a shape": "inner_raceway.fall",
     "beams rest on soft springs, too": "beam.support_stiffness",
     "they span nine decades": "wear_coefficient",
@@ -154,6 +155,8 @@ HARMLESS_SMALL = {
 HARMLESS_LARGE = {
     "a number that something is called by, or drawn from": "seed surface.index track.scatter_seed",
     "as good as the same all across": "surface.lateral",
+    "a track has no end": "wheel-on-rail:start",
+    "what it takes is told": "wheel-on-rail:duration",
     "digits that are asked for": "numerics.rtol",
     "nothing times anything": "noise.receiver_offset sideways.wheel_shift",
     "stiffer is as good as rigid": "beam.support_stiffness",
@@ -192,7 +195,7 @@ def swept():
         own = [each for each in numbers_of(kind) if each.dotted not in left_out]
         own = [each for each in own if role(each.dotted) not in known or context(kind, each.dotted)]
         own = list({role(each.dotted): each for each in reversed(own)}.values())
-        known |= {role(each.dotted) for each in own}
+        known |= {role(each.dotted) for each in own if each.section}
         yield from ((kind, each) for each in reversed(own))
 
 
@@ -278,7 +281,9 @@ def test_a_size_a_thousand_times_off_is_refused_or_doubted_or_named_here(kind, e
     larger = factor > 1.0
     harmless = HARMLESS_LARGE if larger else HARMLESS_SMALL
     named = [
-        reason for reason, keys in harmless.items() if {entry.dotted, role(entry.dotted)} & set(keys.split())
+        reason
+        for reason, keys in harmless.items()
+        if {entry.dotted, role(entry.dotted), f"{kind}:{entry.dotted}"} & set(keys.split())
     ]
     value = usual(kind, entry)
     told = said(with_key(kind, entry, times(factor, value))) - of_the_usual(kind, entry.dotted)

@@ -44,14 +44,14 @@ UNIT = "Is the unit right?"
 
 
 def unusual(case: AnyCase, usual: Mapping[str, str], **called: str) -> Iterator[str]:
-    """Say of each key that is given what is unusual about it; some sections are `called` otherwise here."""
+    """Say of each key what is unusual about it; some sections are `called` otherwise here."""
     for title in case.section_names:
         section = getattr(case, title)
         plain = re.sub(r"\[\d+\]$", "", title)
         plain = called.get(plain, plain)
         for name in section.keys:
             within = usual.get(f"{plain}.{name}") or usual.get(name)
-            if within and name in section.given_names:
+            if within:
                 yield from _beyond(f"{title}.{name}", getattr(section, name), section.keys[name].one, within)
 
 
