@@ -148,6 +148,10 @@ def test_of_four_point_contact_it_says_what_both_flanks_carry():
     tone = document["tones"]["ball"] / math.cos(math.radians(35.0))
     assert f"{spin}, and turn about the axis of the bearing: their tone is {tone:.4g} Hz, not" in said
     assert "Waviness that is heard" not in said
+    call(*given, "--sheet", "qj.html")
+    page = " ".join(Path("qj.html").read_text(encoding="utf-8").split())
+    assert "flanks of the gothic arches" in page
+    assert "The tone of a ball on four flanks is 1.221 times that of one on two" in page
 
 
 def test_of_a_case_whose_speed_changes_it_says_that_it_takes_the_fastest():

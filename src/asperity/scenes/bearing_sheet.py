@@ -18,7 +18,7 @@ from asperity.reporting.tables import ReportTable, number_cells, table, text_cel
 from asperity.scenes.bearing_at_rest import static_group
 from asperity.scenes.figures.bearing import ball_contacts_table, bands_table
 from asperity.schema import tree
-from asperity.structures.ball_bearing import PARTS
+from asperity.structures.ball_bearing import PARTS, BallBearing
 from asperity.structures.roller_bearing import PRINTED, RollerBearing
 from asperity.written_numbers import rounded
 
@@ -100,10 +100,13 @@ def _geometry(keys: LoadKeys) -> ReportTable:
             ("contact angle", angle),
         ]
     else:
+        flanks = f"{rounded(math.degrees(of.arch_angle or 0.0), 4)}°"
+        arches = [("flanks of the gothic arches", flanks)] if of.arches else []
         rows += [
             ("balls", f"{of.balls} of {diameter} mm, {of.ball_material.name}"),
             pitch,
             ("groove radii", f"{of.inner_conformity:g} D (inner), {of.outer_conformity:g} D (outer)"),
+            *arches,
             clearance,
             ("free contact angle", angle),
             ("preload", f"{rounded(of.preload)} N"),
@@ -150,4 +153,7 @@ def _tones(found: LoadedBearing, speed: float) -> ReportTable:
     if speed:
         columns["Hz"] = number_cells(orders * speed, "{:.2f}")
     note = "In pure rolling, at the contact angle of the load; a cage that slips is slower by up to 1 %."
+    if isinstance(of, BallBearing) and of.arches:
+        faster = rounded(1.0 / math.cos(of.arch_angle or 0.0), 4)
+        note += f" The tone of a ball on four flanks is {faster} times that of one on two, which stands here."
     return table("tones", "Tones", columns, note)
