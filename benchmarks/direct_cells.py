@@ -107,6 +107,14 @@ TEMPLATES = {
 }
 """What is changed of templates: laws, and how long the record is, s."""
 
+TRIED = {
+    "fine": ("covered", 2),
+    "whole": ("whole", 1),
+    "covered": ("covered", 1),
+    "coarse": ("covered", 2 / 3),
+}
+"""Cells at rims, and how much finer the grid is than that of the case."""
+
 
 def of_templates(kinds: list[str]) -> None:
     """Print what each kind of cells makes of the cases that users begin with."""
@@ -119,14 +127,14 @@ def of_templates(kinds: list[str]) -> None:
             waves = {f"surface.{name}": getattr(chosen.surface, name) for name in ("shortest", "longest")}
             same |= waves | {"contact.samples": 4}
         found, seconds = {}, {}
-        for name, cells, finer in (("fine", "covered", 2), ("whole", "whole", 1), ("covered", "covered", 1)):
+        for name, (cells, finer) in TRIED.items():
             grid = {"contact.spacing": chosen.contact.spacing / finer, "contact.rim_cells": cells}
             with tempfile.TemporaryDirectory() as folder, patch.dict(os.environ, ASPERITY_CACHE=folder):
                 begun = time.process_time()
                 tree = run(base.with_(**same, **grid))
                 seconds[name] = time.process_time() - begun
             found[name] = tree["spectra/force_level"]
-        for name in ("whole", "covered"):
+        for name in list(TRIED)[1:]:
             off = found[name] - found["fine"]
             for law in off["law"].values.tolist():
                 each = off.sel(law=law).values
