@@ -109,6 +109,7 @@ WITH = {
         "fault count": PIT | {"count": 2},
     },
     "roller-bearing": {
+        "": {"rotating": "20 N", "sensors": ["30 deg"], "cage_slip": [0.01, 0.02]},
         "bearing": {"crowning": "partial", "crowning_straight": "3 mm", "crowning_drop": "2.6 um"},
         "fault": PIT | {"on": "roller", "roller": 1},
     },
@@ -121,9 +122,14 @@ DRAWN |= {"web_thickness_rim": "22 mm", "web_bend": "20 mm", "fillet_radius": "2
 DRAWN |= {"rim_thickness": "65 mm", "rim_width": "135 mm", "flange_height": "28 mm"}
 DRAWN |= {"flange_thickness": "32 mm"}
 WITH["wheel-on-rail"]["wheel drawn"] = {"section": "curved-web", **DRAWN}
-ELSEWHERE = {f"ball.{name}" for name in DRAWN} | {"numerics.poles"}
-"""No wheel is drawn that rolls over a beam, and no beam has poles."""
+OF_OTHERS = {
+    "ball-on-beam": {f"ball.{name}" for name in DRAWN} | {"numerics.poles"},
+    "roller-bearing": {"axial", "friction", "wear_coefficient"},
+}
+"""No wheel is drawn that rolls over a beam, and no beam has poles; rollers slide nowhere."""
 OF_A_FILE = {"structure.nodes", "structure.mass", "structure.inertia", "track.pad_preload"}
+AT_REST = {"bearing.arch_angle"}
+"""No bearing with it runs."""
 LONG_WORK = {"contact.samples"}
 """They are doubted once their textures are made, which takes long."""
 HARMLESS_SMALL = {
@@ -191,7 +197,7 @@ def swept():
     """Each kind with keys of numbers that no kind before it has, or that stand in its contexts."""
     known = set()
     for kind in PRESETS:
-        left_out = OF_A_FILE | LONG_WORK | (ELSEWHERE if kind == "ball-on-beam" else set())
+        left_out = OF_A_FILE | AT_REST | LONG_WORK | OF_OTHERS.get(kind, set())
         own = [each for each in numbers_of(kind) if each.dotted not in left_out]
         own = [each for each in own if role(each.dotted) not in known or context(kind, each.dotted)]
         own = list({role(each.dotted): each for each in reversed(own)}.values())
