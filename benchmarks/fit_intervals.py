@@ -51,7 +51,7 @@ def main():
         else:
             measured = [Measured(RATES, bands, exact * 10.0 ** (0.1 * each)) for each in noise]
         found = asperity.fit(case, measured, free, starts=1)
-        for name, (low, high) in found.intervals.items():
+        for name, (low, high) in filter(all, found.intervals.items()):
             told[name] += 1
             inside[name] += low <= TRUE[name.removeprefix("track.")] <= high
     for name in free:

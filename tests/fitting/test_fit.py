@@ -10,6 +10,8 @@ import asperity
 from asperity import observables
 from asperity.fitting import determined, running
 from asperity.fitting.determined import open_direction, spread_of
+from asperity.fitting.fitted import Undetermined
+from asperity.fitting.free import free_key
 from asperity.fitting.tried import TriedCase
 from asperity.observables.observable import Measured, Observable
 from known_keys import RUBBER, mobility
@@ -146,6 +148,17 @@ def test_the_open_direction_is_the_one_that_changes_nothing():
     other = determined.open_direction(slopes, determined.Spread(1.0, 2.0), {0})
     assert (other.number, other.others) == (1, {0: pytest.approx(-2.0)})
     assert determined.open_direction(slopes, determined.Spread(1.0, 2.0), {0, 1}) is None
+
+
+def test_what_levels_are_open_with_is_told_in_decibels(track):
+    """An e-fold of an amplitude is 8.7 dB: 1 dB is 11.5 % of a stiffness."""
+    name, stiffness = "noise.receiver_offset", "track.pad_stiffness"
+    offset, pads = (free_key(track, each) for each in (name, stiffness))
+    told = Undetermined(offset, (("surface.level", -0.5), (stiffness, 2.0)), (name, "surface.level"))
+    assert ": 1 dB more of it is made up for by 0.5 dB less of surface.level and 23 % more of" in told.words
+    assert (
+        ": 1 % more of it is made up for by 0.17 dB more" in Undetermined(pads, ((name, 2.0),), (name,)).words
+    )
 
 
 def test_a_value_known_to_a_factor_of_three_is_determined():

@@ -6,7 +6,7 @@ import numpy as np
 
 from asperity.arguments import Array
 from asperity.case.any_case import AnyCase
-from asperity.fitting.free import Free
+from asperity.fitting.free import NEPER, Free
 from asperity.observables import observable
 from asperity.observables.observable import Measured, Values
 from asperity.written_numbers import count_of, in_a_row, rounded
@@ -59,10 +59,13 @@ class Undetermined:
     others : tuple of (str, float)
         Keys with which alone the data determine a combination: how many times its own change, in parts of
         each, another has to change so that the data are met alike.
+    levels : tuple of str
+        Keys that are levels, whose parts are those of an amplitude.
     """
 
     free: Free
     others: tuple[tuple[str, float], ...]
+    levels: tuple[str, ...] = ()
 
     @property
     def words(self) -> str:
@@ -72,13 +75,18 @@ class Undetermined:
         if not self.others:
             return f"{name} is not determined by these data; {left}"
         names = in_a_row([other for other, _ in self.others])
-        met = in_a_row(
-            [
-                f"{rounded(abs(by), 2)} % {'more' if by > 0.0 else 'less'} of {other}"
-                for other, by in self.others
-            ]
-        )
-        return f"{name} is not determined apart from {names}: 1 % more of it is made up for by {met}; {left}"
+        scale, unit = self._told(name)
+        met = []
+        for other, by in self.others:
+            other_scale, other_unit = self._told(other)
+            change = f"{rounded(abs(by) * other_scale / scale, 2)} {other_unit}"
+            met.append(f"{change} {'more' if by > 0.0 else 'less'} of {other}")
+        apart = f"{name} is not determined apart from {names}: 1 {unit} more of it is made up for by"
+        return f"{apart} {in_a_row(met)}; {left}"
+
+    def _told(self, name: str) -> tuple[float, str]:
+        """How much of its unit an e-fold is, and the unit in which a change of a key is told."""
+        return (NEPER, "dB") if name in self.levels else (100.0, "%")
 
 
 @dataclass(frozen=True, eq=False)

@@ -274,7 +274,8 @@ def _least_determined(problem: Problem, best: Optimum, contradicted: Collection[
             return None
     number = int(inside[found.number])
     others = tuple((names[other], by) for other, by in found.others.items())
-    return _Least(number, Undetermined(problem.free[number], others), allowed)
+    levels = tuple(each.name for each in problem.free if each.units == "dB")
+    return _Least(number, Undetermined(problem.free[number], others, levels), allowed)
 
 
 def _known(
