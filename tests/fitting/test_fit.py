@@ -138,6 +138,10 @@ def test_the_chance_of_the_record_that_is_run_is_in_the_intervals(track, monkeyp
         inside += low <= 4.0 <= high
         assert high - low < 3.0  # by all bands alike it would be 4 dB
     assert 0.91 <= inside / 200 <= 0.99
+    alike = Measured("loudness", at, 4.0 + 0.0 * at)
+    low, high = asperity.fit(track, alike, starts=1).intervals["surface.level"]
+    known = 2.200985 / np.sqrt(np.sum(1.0 / (0.1**2 + chance**2)))  # Student, 11 degrees of freedom
+    assert high - low == pytest.approx(2.0 * known, rel=1e-3)  # records that agree by chance tell no more
 
 
 def test_the_open_direction_is_the_one_that_changes_nothing():
