@@ -190,11 +190,18 @@ def test_without_private_names_of_numba_plain_kernels_serve_and_that_is_told(fol
     assert not files(folder)
 
 
-def test_what_only_kernels_call_is_machine_code_inside_of_them_alone(folder, module):
+def test_what_only_kernels_call_is_optimised_and_machine_code_inside_of_them_alone(
+    folder, module, monkeypatch
+):
+    optimised, optimise = [], options.JITCodeLibrary._optimize_final_module
+    step = lambda library: (optimised.append(library.name), optimise(library))  # noqa: E731
+    monkeypatch.setattr(options.JITCodeLibrary, "_optimize_final_module", step)
     kernels, *_ = fresh(module)
+    assert [name for name in optimised if name != "nrt"] == ["calling", "thrice"]
     for part in (kernels.inlined, kernels.called):
         (each,) = part.overloads.values()
         engine = kernels.calling.overloads[each.signature.args].library.codegen._engine
+        assert each.library._finalized  # else its parts would be linked at every use
         assert not engine.is_symbol_defined(each.fndesc.mangled_name)
 
 
