@@ -374,6 +374,10 @@ def test_its_viscosity_under_pressure():
 
 
 test_what_cannot_be_is_refused = refusals(
+    (
+        lambda: Oil(68e-6, 0.3e-6),
+        "oil at 100 °C: received 0.3 mm²/s; allowed: more than 0.3 mm²/s, where Walther",
+    ),
     (lambda: Oil(8e-6, 68e-6), "oil at 100 °C: received 68 mm²/s; allowed: less than at 40 °C, 8 mm²/s"),
     (lambda: Oil(68e-6, 8e-6, density=0.0), "density of the oil"),
     (lambda: Oil(68e-6, 8e-6, pressure_viscosity=-1.0), "pressure_viscosity of the oil (1/Pa)"),

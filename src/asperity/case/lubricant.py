@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 GRADE = "ISO VG "
 _VISCOSITY = Quantity("m^2/s", above=0)
-_VISCOUS = "0.1 mm^2/s to 100000 mm^2/s: oils lie between"
+_VISCOUS = "0.4 mm^2/s to 100000 mm^2/s: oils lie between"
 _WITH_OIL = "oil or viscosity_40"
 
 

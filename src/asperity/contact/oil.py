@@ -82,6 +82,9 @@ class Oil:
         if self.pressure_viscosity is not None:
             positive("pressure_viscosity of the oil (1/Pa)", self.pressure_viscosity)
         received = f"{rounded(1e6 * self.viscosity_100)} mm²/s"
+        allowed = f"more than {1.0 - WALTHER:.1f} mm²/s, where Walther's equation ends"
+        thick = 1e6 * self.viscosity_100 > 1.0 - WALTHER
+        require(thick, "viscosity of the oil at 100 °C", received, allowed)
         allowed = f"less than at 40 °C, {rounded(1e6 * self.viscosity_40)} mm²/s"
         require(self.viscosity_100 < self.viscosity_40, "viscosity of the oil at 100 °C", received, allowed)
 
