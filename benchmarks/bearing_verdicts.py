@@ -55,8 +55,9 @@ PIECES = (
 )
 """Turns of the shaft at most, number of pieces of each record, noise that is added, in rms of the record, and
 how many wrong speeds."""
-WRONG = (0.25, 0.5, 0.7, 0.9, 0.97, 1.03, 1.1, 1.3, 2.0, 4.0)
-"""Factors by which they are wrong."""
+WRONG = (0.16, 0.25, 0.5, 0.662, 0.7, 0.9, 0.97, 1.03, 1.1, 1.3, 1.51, 2.0, 3.6, 4.0, 6.28)
+"""Factors by which they are wrong, among them those at which one ring has the lines of the other, at which
+the shaft has those of the outer ring, and radians for turns."""
 ALLOWED = 0.031
 """Share by which a speed that is named may be off the nominal one: those of these rigs are so far."""
 PART = re.compile(r"lines of the (outer|inner|ball)")
@@ -229,6 +230,7 @@ def asked(signal, rate, tones, speed, factor, part, about):
     yield about | basis | {
         "part": part, "sound": part is None, "length": length, "factor": factor, "right": right,
         "named": named, "confidence": found.confidence, "undecided": found.undecided,
+        "otherwise": found.otherwise is not None,
     }  # fmt: skip
 
 
@@ -240,7 +242,7 @@ def _right(found, part: str | None, speed: float, factor: float) -> bool:
         return named == [part] and abs(found.parts[0].speed / speed - 1.0) <= ALLOWED
     if found.blows:
         return not right_speed
-    if found.speed_is == "confirmed" or found.multiple:
+    if found.speed_is == "confirmed" or found.others:
         return part is None
     return part is None or not right_speed  # "if it is right", it says
 
@@ -285,7 +287,7 @@ WITH_FEATURES = ("ball", "fault", "fault, shaft not found", "elsewhere")
 def calibrate(rows) -> None:
     """Print coefficients, and how often what is said with a confidence is right, each record by the
     others."""
-    rows = [row for row in rows if not row["undecided"]]
+    rows = [row for row in rows if not (row["undecided"] or row["otherwise"])]
     kinds, weight = sorted({row["kind"] for row in rows}), weights(rows)
     for kind, values in fitted(rows, weight, kinds).items():
         own = [row for row in rows if row["kind"] == kind and (kind in BY_MADE or not row["made"])]

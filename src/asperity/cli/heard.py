@@ -179,7 +179,7 @@ def _taken(diagnosis: Diagnosis) -> str:
     """In which pieces a signal is read, and which speed is taken."""
     origin = {
         "confirmed": "by lines of the shaft",
-        "unconfirmed": "as given: lines of the shaft are not found",
+        "unconfirmed": f"as given{': lines of the shaft are not found' * (not diagnosis.others)}",
         "contradicted": f"by what its lines fit, not {rounded(60.0 * diagnosis.told, 5)} 1/min as given",
     }[diagnosis.speed_is]
     pieces = diagnosis.record.pieces

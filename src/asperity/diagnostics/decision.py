@@ -7,12 +7,13 @@ from typing import Literal
 
 import numpy as np
 
-from asperity.arguments import ArrayLike, positive, require
+from asperity.arguments import Array, ArrayLike, positive, require
 from asperity.diagnostics.confidence import Basis
 from asperity.diagnostics.envelopes import above_frequency
-from asperity.diagnostics.hypotheses import FINE, NEAR, RANGE, TURNED, BearingRecord, Hypothesis, Tone
+from asperity.diagnostics.hypotheses import FINE, NEAR, RANGE, BearingRecord, Hypothesis, Tone, deepest_comb
 from asperity.diagnostics.kurtogram import Kurtogram, kurtogram
 from asperity.diagnostics.prominence import HARMONICS, LOWEST_PLACE
+from asperity.diagnostics.pure_tones import tones_alone
 from asperity.diagnostics.recording import MOST_SAMPLES, Recording, SignalPieces
 from asperity.progress import Progress, counted
 from asperity.written_numbers import rounded
@@ -23,7 +24,12 @@ it."""
 APART = 0.06
 """Share about the speed given within which its lines are sought: one that is 3 % off is told where it is."""
 ODD = 8.0
-"""Support that the odd multiples of a speed alone must have: half of the true one has none."""
+"""Support that the odd multiples of a speed alone must have: half of the true one has none, and lines between
+the multiples that have it are those of a slower shaft."""
+TIMES = (2, 3)
+"""Multiples and parts of a speed that are taken for another one by their own lines."""
+SHARES = (1.0 / 3.0, 0.5, 2.0 / 3.0, 0.75, 4.0 / 3.0, 1.5)
+"""Speeds that have half of the lines of a speed, a third or a quarter: over that speed."""
 TOLD = 15.0
 """Score that the speed given is worth: what is told is more often right than not."""
 AHEAD, AHEAD_OF_SHAFT = 10.0, 25.0
@@ -49,6 +55,10 @@ FEW_BLOWS = 20.0
 """Number of blows for which twice that share is asked: of few, some line up by chance."""
 ALIKE = 8.0
 """Score within which two parts that have the same lines are not told apart."""
+
+AROUND_LINES = 2.5
+"""Of the highest line that is sought, up to which others are looked at, by which it is told how far it stands
+out."""
 
 Speed = Literal["confirmed", "unconfirmed", "contradicted"]
 NAMES = {"outer": "outer ring", "inner": "inner ring", "ball": "ball"}
@@ -82,8 +92,12 @@ class Diagnosis:
         Lines of a part that are too faint for a fault.
     blows : float
         Frequency of blows that are those of no part at this speed, Hz; 0 for none.
-    multiple : bool
-        Whether lines of the shaft are where the speed says, but clearer by far at half or twice of it.
+    others : tuple of float
+        Speeds, Hz, that have the lines of the shaft as well as the one given: its half, its double, ….
+    otherwise : Hypothesis or None
+        What the lines of the parts are as well, of a shaft at another speed.
+    tones_alone : tuple of float
+        Frequencies, Hz, of a record that holds tones alone, against which no line stands out; none of others.
     basis : Basis
         What this rests on.
     resolution : float
@@ -106,13 +120,15 @@ class Diagnosis:
     alike: tuple[Hypothesis, ...]
     faint: Hypothesis | None
     blows: float
-    multiple: bool
+    others: tuple[float, ...]
     basis: Basis
     resolution: float
     record: BearingRecord
     doubts: tuple[str, ...] = ()
     fastest: float = math.inf
     element: str = "ball"
+    otherwise: Hypothesis | None = None
+    tones_alone: tuple[float, ...] = ()
 
     def name(self, part: str) -> str:
         """A part, as people say it."""
@@ -125,9 +141,10 @@ class Diagnosis:
 
     @property
     def confidence(self) -> float:
-        """That this is so, 0 to 1: no more than even at a speed beyond belief, as no record of such a one is
-        among those that it is calibrated on."""
-        return min(self.basis.confidence, EVEN) if self.beyond_belief else self.basis.confidence
+        """That this is so, 0 to 1: no more than even where the lines fit another speed better, of tones
+        alone, and at a speed beyond belief, as no such record is among those that it is calibrated on."""
+        doubted = self.beyond_belief or self.otherwise is not None or bool(self.tones_alone)
+        return min(self.basis.confidence, EVEN) if doubted else self.basis.confidence
 
     @property
     def beyond_belief(self) -> bool:
@@ -196,7 +213,7 @@ def diagnose(
     -----
     Two envelopes are looked at, as W. A. Smith and R. B. Randall (Mechanical Systems and Signal Processing
     64–65 (2015) 100) recommend: that of the prewhitened signal, and that of the band of the largest kurtosis.
-    In both the clearest combs of harmonics are sought at *any* speed from a quarter to four times that given.
+    In both the clearest combs of harmonics are sought at *any* speed within a factor of eight of that given.
     Each comb may be that of each part, at the speed that follows from it; the lines of the shaft, and side
     bands at its speed or, of a ball, at that of the cage, say which. That speaks against two mistakes: a
     wrong speed or sampling rate, and a second ring beside the right one, whose lines f_i = Z f_r − f_o are
@@ -254,9 +271,21 @@ def diagnose_together(
     reached = HARMONICS * tone.order * told
     seen = Kurtogram.mean(_kurtograms(pieces, rate, reached, progress))
     limits = band or _ringing_band(seen, rate, reached)
-    sought = TURNED * RANGE * told * max(1.0, *(each.highest for each in tones.values()))
+    sought = AROUND_LINES * HARMONICS * RANGE * told * max(1.0, *(each.highest for each in tones.values()))
     record = BearingRecord.of(pieces, rate, seen, limits, sought, HUM, progress)
-    found = decided(record, record.read(tones, told), tones, told)
+    alone = [
+        tones_alone(each, rate, clipped=recording.clipped > 0.0)
+        for recording in recordings
+        for each in recording.stretches
+    ]
+    if all(alone):
+        silent = decided(record, (), tones, told)
+        basis = Basis("nothing", silent.turns)
+        found = replace(
+            silent, speed=told, speed_is=UNCONFIRMED, others=(), basis=basis, tones_alone=alone[0]
+        )
+    else:
+        found = decided(record, record.read(tones, told), tones, told)
     doubts = dict.fromkeys(each for recording in recordings for each in recording.doubts)
     return replace(found, doubts=tuple(doubts), fastest=fastest, element=element)
 
@@ -296,11 +325,14 @@ def decided(
     ranked = sorted(found, key=lambda each: -_worth(each, told))
     resolution = 1.0 / record.duration
     struck = _likely([each for each in ranked if _deep(each, tones, record.duration * record.pieces)])
-    shaft, support, alone = shaft_near(record, told)
+    struck = [each for each in struck if not _of_sound_ring(each, ranked, tones)]
+    deepest = deepest_comb((each.depth, each.tone) for each in found)
+    blows = 0.0 if abs(deepest / told - 1.0) <= APART else deepest  # once a turn they are the shaft's
+    shaft, support, others = shaft_near(record, tones, told, blows)
     seen = support >= SUPPORTED and all(
         _agrees(each, told, resolution) for each in (shaft, record.speed(shaft))
     )
-    there = seen and alone
+    there = seen and not others
     struck = [each for each in struck if not _of_shaft_or_mains(each, told, resolution, seen)]
     seen_at = record.speed(shaft)
     turns = record.duration * told
@@ -312,7 +344,7 @@ def decided(
         alike=(),
         faint=None,
         blows=0.0,
-        multiple=seen and not alone,
+        others=others if seen else (),
         basis=Basis("sound" if seen else "nothing", turns),
         resolution=resolution,
         record=record,
@@ -348,7 +380,9 @@ def _of_parts(
 ) -> Diagnosis:
     """What is said where a part is struck at the speed given."""
     told, resolution = bare.told, bare.resolution
-    there = bare.speed_is == CONFIRMED or best.support >= SUPPORTED
+    better = [each for each in rivals if each.support >= SUPPORTED and each.score > best.score]
+    otherwise = next((each for each in better if not _near(each, told)), None)
+    there = otherwise is None and (bare.speed_is == CONFIRMED or best.support >= SUPPORTED)
     near = [each for each in rivals if _near(each, told)]
     close = [each for each in near if abs(each.tone - best.tone) <= 2.0 * resolution]
     alike = {each.part: each for each in close if _worth(each, told) >= _worth(best, told) - ALIKE}
@@ -359,7 +393,7 @@ def _of_parts(
         return bare
     found = replace(bare, parts=(best, *seconds), alike=tuple(alike.values()), basis=basis)
     if not there:
-        return found
+        return replace(found, speed=told, speed_is=UNCONFIRMED, otherwise=otherwise)
     speed = bare.record.speed(best.speed)
     if _at(speed, told):
         return replace(found, speed=speed, speed_is=CONFIRMED)
@@ -376,7 +410,7 @@ def _of_shaft_or_mains(each: Hypothesis, told: float, resolution: float, seen: b
     if _near(each, told):
         return False
     if abs(each.tone - told) <= resolution:
-        return True
+        return each.support < SUPPORTED
     lines = (round(each.tone / told) * told, *MAINS) if seen else MAINS
     return min(abs(each.tone - line) for line in lines) <= 0.5 * resolution
 
@@ -413,6 +447,14 @@ def _deep(each: Hypothesis, tones: Mapping[str, Tone], duration: float) -> bool:
     """Whether the envelope follows the blows as it does those of a fault."""
     least = LEAST_DEPTH["turns" if tones[each.part].modulation else "stands"]
     return each.depth >= least * (1.0 + FEW_BLOWS / (each.tone * duration))
+
+
+def _of_sound_ring(each: Hypothesis, ranked: Sequence[Hypothesis], tones: Mapping[str, Tone]) -> bool:
+    """Whether faint blows of a part that turns are as likely those of balls that pass a sound ring, which
+    stands: at the speed that lines of the shaft speak for."""
+    standing = [other for other in ranked if not tones[other.part].modulation and other.tone == each.tone]
+    likelier = any(other.support > max(each.support, 0.0) for other in standing)
+    return each.depth < LEAST_DEPTH["stands"] and likelier
 
 
 def _likely(struck: Sequence[Hypothesis]) -> list[Hypothesis]:
@@ -455,16 +497,27 @@ def _of_shaft(each: Hypothesis, best: Hypothesis, tones: Mapping[str, Tone], res
     return bool((np.abs(made - each.tone) <= 2.0 * resolution).any())
 
 
-def shaft_near(record: BearingRecord, told: float) -> tuple[float, float, bool]:
-    """Where near a speed lines of the shaft are clearest, Hz, how clear, and whether half or twice of it is
-    not clearer by more than what is told is worth."""
+def shaft_near(
+    record: BearingRecord, tones: Mapping[str, Tone], told: float, deepest: float = 0.0
+) -> tuple[float, float, tuple[float, ...]]:
+    """Where near a speed lines of the shaft are clearest, Hz, how clear, and which other speeds, Hz, have
+    them as well: those whose lines are clearer, or of which these are a part's; a multiple that leaves few of
+    them, and a part of it where there are lines between."""
+
+    def support(speeds: Array, but: int = 0) -> Array:
+        return record.supports(speeds, deepest=deepest, but=but)
+
     speeds = told * np.exp(np.arange(-APART, APART, FINE))
-    support = record.supports(speeds)
-    at = int(support.argmax())
-    here = speeds[at : at + 1]
-    others = np.concatenate(
-        [share * speeds[np.abs(speeds / here - 1.0) <= NEAR / 4.0] for share in (0.5, 2.0)]
-    )
-    odd = float(record.supports(2.0 * here, offset=0.5)[0])
-    alone = record.supports(others).max() <= support[at] + TOLD and odd >= ODD
-    return float(here[0]), float(support[at]), bool(alone)
+    clear = support(speeds)
+    at = int(clear.argmax())
+    here = float(speeds[at])
+    near = np.linspace(1.0 - NEAR / 4.0, 1.0 + NEAR / 4.0, 1 + round(NEAR / 2.0 / FINE)) * here
+    spans = [share * near for share in SHARES]
+    spans += [here / np.arange(part.lowest, part.highest, FINE * part.order) for part in tones.values()]
+    others = [float(span[span.size // 2]) for span in spans if support(span).max() > clear[at]]
+    for times in TIMES:
+        own = support(near, times).max()
+        clearer = support(times * near).max() > clear[at]
+        others += [times * here] * bool(own < (SUPPORTED if clearer else ODD))
+        others += [here / times] * bool(support(np.array([here / times]), times)[0] >= ODD)
+    return here, float(clear[at]), tuple(sorted(set(others)))

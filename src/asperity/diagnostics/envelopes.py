@@ -186,7 +186,7 @@ def prewhitened(signal: ArrayLike, rate: float) -> Array:
     values, _ = checked_signal(signal, rate)
     lines = rfft(values)
     size = np.abs(lines)
-    size[size < FLOOR * size.max()] = np.inf
+    np.maximum(size, FLOOR * size.max(), out=size)
     lines /= size
     count = values.size
     del values, size

@@ -1,20 +1,20 @@
 """What the lines of a record may mean: which part is struck, at which speed, and what the shaft says of
 it."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from asperity.arguments import Array
-from asperity.diagnostics.envelopes import FLOOR, analytic_signal, mean_spectrum, prewhitened
+from asperity.diagnostics.envelopes import analytic_signal, mean_spectrum, prewhitened
 from asperity.diagnostics.kurtogram import Kurtogram
 from asperity.diagnostics.lines import STANDS_OUT
-from asperity.diagnostics.prominence import LOWEST_PLACE, Prominence
+from asperity.diagnostics.prominence import LOWEST_PLACE, SPREAD, Prominence
 from asperity.diagnostics.recording import SignalPieces
 from asperity.progress import Progress, counted
 
-RANGE = 4.2
+RANGE = 8.0
 """Factor by which the speed is sought off the one given, either way."""
 NEAR = 0.02
 """Share by which a speed may be off the one given: motors slip, and speeds are rounded."""
@@ -28,6 +28,8 @@ TURNED = 25.0
 """Multiples of the speed up to which lines are held against one another."""
 BETTER = 8.0
 """Support by which a speed beside the one given must be better to be taken in its place."""
+DEEP = 0.25
+"""Share by which the envelope follows blows that are no shaft's."""
 WEAK = 3.0
 """Amplitude over the median from which on lines count that lie where a part has them."""
 
@@ -163,18 +165,17 @@ class BearingRecord:
             return counted(pieces.seen(view, step), len(pieces), what, progress)
 
         plain = ((each, float(each.std())) for each in seen(np.asarray, "spectrum"))
-        spectrum, loudness = mean_spectrum(plain, rate / step)
-        silent = FLOOR * loudness
+        spectrum, _ = mean_spectrum(plain, rate / step)
 
-        def stands_out(view: Callable[[Array], Array], width: float, name: str, silent: float) -> Prominence:
+        def stands_out(view: Callable[[Array], Array], width: float, name: str) -> Prominence:
             envelopes = seen(view, f"envelope of the {name}")
-            return Prominence.of_envelopes(envelopes, rate / step, width, len(pieces), highest, silent)
+            return Prominence.of_envelopes(envelopes, rate / step, width, len(pieces), highest)
 
         return cls(
             duration=pieces.size / rate,
-            spectrum=Prominence.of(spectrum, means=len(pieces), highest=highest, silent=silent),
-            white=stands_out(white, 0.5 * rate, "whitened signal", 0.0),
-            band=stands_out(ringing, limits[1] - limits[0], "band", silent),
+            spectrum=Prominence.of(spectrum, means=len(pieces), highest=highest),
+            white=stands_out(white, 0.5 * rate, "whitened signal"),
+            band=stands_out(ringing, limits[1] - limits[0], "band"),
             kurtogram=kurtogram,
             limits=limits,
             pieces=len(pieces),
@@ -189,31 +190,37 @@ class BearingRecord:
         """Whether it is long enough for the line of a shaft at a speed, Hz."""
         return self.duration * speed >= 2.0 * LOWEST_PLACE
 
-    def _beside(self, view: Prominence, frequency: Array, tone: float) -> Array:
-        """Standardised values at frequencies, without those that the comb of a tone may make itself."""
+    def _beside(self, view: Prominence, frequency: Array, *combs: Array) -> Array:
+        """Standardised values at frequencies (n, k), without those that combs of tones (n, 1) may make
+        themselves; NaN for none."""
         found = view.standardised(frequency, TURNED * float(frequency.flat[0]))
-        if not tone:
-            return found
-        nearest = np.maximum(np.rint(frequency / tone), 1.0) * tone
-        return np.where(np.abs(frequency - nearest) <= (LOWEST_PLACE + 1) * view.step, np.nan, found)
+        for tone in combs:
+            nearest = np.maximum(np.rint(frequency / tone), 1.0) * tone
+            own = np.abs(frequency - nearest) <= (LOWEST_PLACE + 1) * view.step
+            found = np.where(own, np.nan, found)
+        return found
 
     def supports(
-        self, speed: Array, tone: float = 0.0, modulation: float = 1.0, offset: float = 0.0
+        self, speed: Array, tone: float = 0.0, modulation: float = 1.0, *, deepest: float = 0.0, but: int = 0
     ) -> Array:
         """How clearly there are lines of the shaft at each speed (n,), Hz, as `Hypothesis.support` has it.
 
-        Without those of the comb of a tone, but with its side bands at the modulation times the speed. With
-        an offset of a half, between the multiples of the speed instead.
+        Without those of the combs of a tone and of the deepest blows, but with side bands of the tone at the
+        modulation times the speed. With `but`, instead of lines at multiples of so many times the speed
+        others that follow.
         """
         views = (self.spectrum, *self.envelopes)
         total = np.zeros(speed.size)
+        own = [np.full((speed.size, 1), each or np.nan) for each in (tone, deepest)]
         for view, count in zip(views, TURNS, strict=True):
-            lines = speed[:, None] * (np.arange(1, count + 1) - offset)
-            own = tone if view is not self.spectrum else 0.0
-            total += _less_largest(self._beside(view, lines, own))
+            order = np.arange(1, 2 * count + 1)
+            lines = speed[:, None] * (order[order % but > 0] if but else order)[:count]
+            total += _less_largest(self._beside(view, lines, *own[: 2 * (view is not self.spectrum)]))
+        once = np.abs(speed - deepest)[:, None] <= SPREAD * self.white.step  # blows of the shaft itself
+        own[1] = np.where(once, np.nan, own[1])
         for view in self.envelopes if tone and modulation else ():
             sides = np.array([n * tone + side * modulation * speed for n in BESIDE for side in (-1.0, 1.0)]).T
-            total += _less_largest(self._beside(view, sides, tone))
+            total += _less_largest(self._beside(view, sides, *own))
         return np.where(speed >= 2 * LOWEST_PLACE * self.spectrum.step, total, 0.0)
 
     def read(self, tones: Mapping[str, Tone], told: float) -> list[Hypothesis]:
@@ -225,17 +232,23 @@ class BearingRecord:
             for every in range(1, part.unlike + 1)
             if every == 1 or self.holds_shaft(told)
         ]
-        for clear, tone in self._combs([part for _, _, part in combs], told):
-            depth = max(each.depth(tone) for each in self.envelopes)
+        clear_combs = self._combs([part for _, _, part in combs], told)
+        deepest = deepest_comb((self._depth(tone), tone) for _, tone in clear_combs)
+        for clear, tone in clear_combs:
+            depth = self._depth(tone, deepest)
             for name, every, part in combs:
-                best, support = self._best_speed(part, tone, told / RANGE, told * RANGE)
-                near, nearly = self._best_speed(part, tone, told * (1.0 - NEAR), told * (1.0 + NEAR))
+                best, support = self._best_speed(part, tone, deepest, told / RANGE, told * RANGE)
+                near, nearly = self._best_speed(part, tone, deepest, told * (1.0 - NEAR), told * (1.0 + NEAR))
                 if best:
                     found.append(Hypothesis(name, best, tone, clear, support, depth, every))
                 resolved = abs(best - near) > 0.5 / self.duration
                 if near and (nearly >= support - BETTER or not resolved):
                     found.append(Hypothesis(name, near, tone, clear, nearly, depth, every))
         return sorted(found, key=lambda each: -each.score)
+
+    def _depth(self, tone: float, deepest: float = 0.0) -> float:
+        """Share by which an envelope follows a comb, without what is that of the deepest one."""
+        return max(each.depth(tone, deepest) for each in self.envelopes)
 
     def _combs(self, tones: Sequence[Tone], told: float) -> list[tuple[float, float]]:
         """How clear combs are, and their tones, Hz: the clearest at any speed, and those of the parts."""
@@ -263,7 +276,9 @@ class BearingRecord:
                     found.append((float(clear.max()), tone))
         return max(found)
 
-    def _best_speed(self, part: Tone, tone: float, low: float, high: float) -> tuple[float, float]:
+    def _best_speed(
+        self, part: Tone, tone: float, deepest: float, low: float, high: float
+    ) -> tuple[float, float]:
         """Speed within limits at which the shaft speaks most for a part with a tone, Hz, and how much; 0 for
         none."""
         blurred = 0.5 * self.white.step  # a comb is known to a quarter of the resolution
@@ -272,7 +287,7 @@ class BearingRecord:
         if low >= high:
             return 0.0, 0.0
         speeds = np.exp(np.arange(np.log(low), np.log(high) + FINE, FINE))
-        support = self.supports(speeds, tone, part.modulation or 1.0)
+        support = self.supports(speeds, tone, part.modulation or 1.0, deepest=deepest)
         clearest = np.flatnonzero(support >= support.max() - 1e-9)
         at = int(clearest[clearest.size // 2])
         return float(speeds[at]), float(support[at])
@@ -297,6 +312,13 @@ class BearingRecord:
             return about
         value, weight = np.array(sorted(said)).T
         return float(value[np.searchsorted(np.cumsum(weight), 0.5 * weight.sum())])
+
+
+def deepest_comb(combs: Iterable[tuple[float, float]]) -> float:
+    """Tone of the deepest of combs by depth and tone, Hz: of blows, whose lines are not the shaft's; 0 for
+    none that is as deep as those of a fault."""
+    depth, tone = max(combs, default=(0.0, 0.0))
+    return tone if depth >= DEEP else 0.0
 
 
 def _less_largest(terms: Array) -> Array:

@@ -10,8 +10,6 @@ from asperity.arguments import Array
 from asperity.diagnostics.envelopes import Spectrum, mean_spectrum
 from asperity.diagnostics.lines import AROUND, COUNTED, FEWEST, STANDS_OUT, WITHIN
 
-STEADY = 1e-5
-"""Share of an envelope up to which rounding may move it: noise moves that of any record more."""
 HARMONICS = 5
 """Of a comb: what a resonance leaves of them differs, what most of them have counts."""
 LOWEST_PLACE = 3
@@ -25,7 +23,8 @@ BESIDE = 2
 SPREAD = 4
 """Places by which a line reaches beside its own: half the main lobe of the window."""
 COMPARABLE = 0.3
-"""Share of the lines of a comb that those between them must have to be told as its true fundamental."""
+"""Share of the lines of a comb that those between them must have to be told as its true fundamental, and
+those of its own beside a deeper comb's."""
 
 
 def _as_of_one(ratio: Array, means: int) -> Array:
@@ -68,16 +67,10 @@ class Prominence:
 
     @classmethod
     def of(
-        cls,
-        spectrum: Spectrum,
-        level: float = 1.0,
-        means: int = 1,
-        highest: float = np.inf,
-        silent: float = 0.0,
+        cls, spectrum: Spectrum, level: float = 1.0, means: int = 1, highest: float = np.inf
     ) -> "Prominence":
         """How far the lines of a spectrum stand out up to a highest frequency, Hz, or of the mean of so many:
-        noise has higher lines in one than in the mean of many. Lines that are silent, as those which rounding
-        leaves, do not."""
+        noise has higher lines in one than in the mean of many."""
         from scipy.ndimage import maximum_filter1d
 
         frequency, amplitude = spectrum
@@ -91,7 +84,7 @@ class Prominence:
             last = int(centre + half)
             medians.append(np.median(amplitude[min(first, amplitude.size - 1) : last]))
         background = np.interp(np.arange(amplitude.size), centres, medians)
-        ratio = amplitude / np.maximum(background, max(silent, 1e-300))
+        ratio = amplitude / np.maximum(background, 1e-300)
         ratio[: LOWEST_PLACE - 1] = 0.0
         kept = slice(None)
         if highest < frequency[-1]:
@@ -108,15 +101,13 @@ class Prominence:
         width: float,
         means: int = 1,
         highest: float = np.inf,
-        silent: float = 0.0,
     ) -> "Prominence":
         """How far lines in the mean of so many envelopes, of one length and a band of a width, Hz, stand out,
-        up to a highest frequency, Hz; silent ones do not."""
+        up to a highest frequency, Hz."""
         levelled = ((each, float(each.mean())) for each in envelopes)
         (frequency, amplitude), level = mean_spectrum(levelled, rate)
         held = frequency <= width
-        silent = max(silent, STEADY * level)
-        return cls.of((frequency[held], amplitude[held]), level, means, highest, silent)
+        return cls.of((frequency[held], amplitude[held]), level, means, highest)
 
     @property
     def spectrum(self) -> Spectrum:
@@ -170,6 +161,8 @@ class Prominence:
         """
         own = np.log(self.lines_of(fundamental)[1] + 1e-300).mean()
         for share in (2, 3):
+            if fundamental / share < LOWEST_PLACE * self.step:
+                break
             between = np.array([n for n in range(1, 2 * share) if n % share]) * fundamental / share
             if shaft:
                 between = between[~self._beside_shaft(between, fundamental, shaft)]
@@ -191,12 +184,21 @@ class Prominence:
         off = np.minimum(off, np.abs(frequency - np.rint(frequency / shaft) * shaft))
         return np.asarray(off <= SPREAD * self.step)
 
-    def depth(self, fundamental: float) -> float:
+    def depth(self, fundamental: float, deepest: float = 0.0) -> float:
         """Share by which the envelope rises and falls with a comb: root of the squares of its lines over its
-        mean."""
+        mean.
+
+        Without lines of the deepest comb, where its fundamental, Hz, is higher and those of its own are no
+        match for them.
+        """
         place, amplitude = self.lines_of(fundamental)
         beyond = np.maximum(amplitude**2 - (0.5 * STANDS_OUT * self.background[place]) ** 2, 0.0)
-        return float(np.sqrt(beyond.sum()) / self.level)
+        own = beyond
+        if deepest > fundamental + WITHIN * self.step:
+            off = place * self.step / deepest
+            own = beyond * (np.abs(off - np.maximum(np.rint(off), 1.0)) * deepest > WITHIN * self.step)
+        counted = beyond if own.sum() >= COMPARABLE**2 * beyond.sum() else own
+        return float(np.sqrt(counted.sum()) / self.level)
 
     def strongest(self, low: float, high: float) -> tuple[float, float]:
         """How clear the clearest deep comb with a fundamental in a range is, 0 for none, and its fundamental,

@@ -28,7 +28,10 @@ def diagnosis_sentence(found: Diagnosis, known: str | None = None) -> str:
         What is not confirmed of the speed comes first; each verdict has its confidence.
     """
     words = [BEYOND.format(turns(found.told))] if found.beyond_belief else []
-    words += [_too_short(found)] if found.undecided else [*_of_speed(found), _of_parts(found)]
+    if found.tones_alone:
+        words.append(_tones_alone(found))
+    else:
+        words += [_too_short(found)] if found.undecided else [*_of_speed(found), _of_parts(found)]
     named = {each.part for each in (*found.parts, *found.alike)}
     if known and known not in named:
         words.append(
@@ -64,9 +67,25 @@ def _hertz(frequency: float, found: Diagnosis) -> str:
     return f"{frequency:.{max(0, math.ceil(-math.log10(found.resolution)))}f} Hz"
 
 
+def _otherwise(found: Diagnosis) -> str:
+    """What else lines of parts are, of a shaft at another speed."""
+    other = found.otherwise
+    if other is None:
+        return ""
+    return f"; they fit the {found.name(other.part)} of a shaft at {turns(other.speed)} better"
+
+
 def _half(each: Hypothesis) -> str:
     """What is said of blows that are unlike in turn."""
     return " and at half of it (one ring strikes harder)" if each.every > 1 else ""
+
+
+def _tones_alone(found: Diagnosis) -> str:
+    """What is said of a record of a few tones."""
+    at = " and ".join(_hertz(each, found) for each in found.tones_alone)
+    lines = f"tone{'s' * (len(found.tones_alone) > 1)} at {at}"
+    beside = "beside which it has no more than what rounding leaves"
+    return f"The record holds the {lines} alone, {beside}: it says nothing of rings and {found.element}s."
 
 
 def _too_short(found: Diagnosis) -> str:
@@ -93,8 +112,10 @@ def _of_speed(found: Diagnosis) -> list[str]:
         )
         line = f"for the line of the shaft at {turns(found.told)}, {needed}"
         return [f"{short} {line}: the speed is not confirmed."]
-    if found.multiple and not found.blows:
-        return [f"Lines of the shaft are at {turns(found.told)}; half or twice of it would have them, too."]
+    if found.others and not found.blows:
+        nearest = sorted(found.others, key=lambda each: abs(math.log(each / found.told)))[:2]
+        others = " and ".join(turns(each) for each in sorted(nearest))
+        return [f"Lines of the shaft are at {turns(found.told)}; a shaft at {others} would have them, too."]
     missed = f"The line of the shaft is not found at {turns(found.told)}"
     if found.blows:
         return [f"{missed}: {ASKED}"]
@@ -120,11 +141,11 @@ def _of_parts(found: Diagnosis) -> str:
             "unconfirmed": "If it is right, there are",
             "contradicted": "At that speed there are",
         }[found.speed_is]
-        return f"{begin} {there}, {resolved}: {sure}."
+        return f"{begin} {there}, {resolved}{_otherwise(found)}: {sure}."
     if found.blows:
         return (
             f"Blows at {_hertz(found.blows, found)}, {resolved}, are those of no part at this speed: {sure}."
         )
-    condition = "" if found.speed_is == "confirmed" or found.multiple else " if it is right"
+    condition = "" if found.speed_is == "confirmed" or found.others else " if it is right"
     parts = f"rings or {found.element}s"
     return f"No lines of {parts} stand out: no sign of a fault{condition}, {sure}."

@@ -1,0 +1,95 @@
+"""Records asked at wrong speeds: what another speed explains as well is not confirmed, nor sure."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from asperity.diagnostics import diagnose, diagnosis_sentence
+from asperity.structures.ball_bearing import BallBearing
+from faulty_signals import faulty_signal, orders
+
+RATE, SPEED = 12_000.0, 29.3
+TONES = BallBearing.named("6205").tones()
+DATA = Path(__file__).parents[3] / "shared" / "data" / "hit_6205_51k.npz"
+measured = pytest.mark.skipif(not DATA.is_file(), reason="no measured bearings in shared/data")
+
+
+def shaft_alone(multiples, seed=0):
+    """Noise and lines of a shaft at multiples of its speed, 2 s."""
+    draw = np.random.default_rng(seed)
+    time = np.arange(24_000) / RATE
+    lines = (np.sin(2.0 * np.pi * SPEED * n * time + draw.uniform(0.0, 6.0)) / n for n in multiples)
+    return 0.3 * draw.normal(size=time.size) + 0.5 * sum(lines)
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("factor", [1.0 / 3.0, 0.5, 2.0 / 3.0, 0.75, 1.25, 1.5, 2.0, 2.5, 3.0])
+def test_a_speed_whose_multiples_or_parts_have_the_lines_is_not_confirmed(factor, seed):
+    """Of ten multiples every one, every second, … is there, or others between: told half, double, 2.5 times,
+    it was confirmed."""
+    signal = shaft_alone(range(1, 21), seed)
+    assert diagnose(signal, RATE, TONES, SPEED).speed_is == "confirmed"
+    assert diagnose(signal, RATE, TONES, SPEED * factor).speed_is != "confirmed"
+
+
+def test_what_else_the_speed_may_be_is_said():
+    """Every second multiple alone: of the double all lines are there."""
+    found = diagnose(shaft_alone(range(2, 21, 2)), RATE, TONES, SPEED)
+    assert found.speed_is == "unconfirmed"
+    assert any(each == pytest.approx(2.0 * SPEED, rel=0.01) for each in found.others)
+    assert " a shaft at 58." in diagnosis_sentence(found).split(" would have them, too.")[0]
+
+
+@pytest.mark.parametrize("factor", [2.0 * np.pi, 0.16, 7.0])
+@pytest.mark.parametrize("part", ["outer", "inner"])
+def test_speeds_in_other_units_are_told_where_they_are(part, factor):
+    """Radians for turns: the true speed is beyond a quarter and four times."""
+    signal = faulty_signal(part, SPEED, RATE, 3.0, noise=0.15)
+    found = diagnose(signal, RATE, TONES, SPEED * factor)
+    assert found.speed_is == "contradicted"
+    assert [each.part for each in found.parts] == [part]
+    assert found.speed == pytest.approx(SPEED, rel=0.01)
+
+
+def test_a_part_whose_lines_fit_another_speed_better_is_no_surer_than_even():
+    """Told two thirds of its speed, an outer ring has the lines of an inner one: it was 97 % sure."""
+    tone = orders("6205")
+    for seed in range(5):
+        signal = faulty_signal("outer", SPEED, RATE, 1.0, noise=0.2, shaft=0.3, seed=seed)
+        found = diagnose(signal, RATE, TONES, SPEED * tone["outer"] / tone["inner"])
+        wrong = [each.part for each in found.parts] != ["outer"]
+        assert not wrong or found.confidence <= 0.5
+        assert found.speed_is != "confirmed"
+
+
+@measured
+@pytest.mark.parametrize("factor", [0.137, 0.5, 0.65, 0.6667, 1.5, 1.536, 2.65, 5.0, 7.3])
+def test_of_measured_records_no_wrong_speed_has_a_confident_part_that_is_not_struck(factor):
+    """Of one record, OR8_600, no line of the shaft is heard: it stays what it would be if the speed were
+    right."""
+    with np.load(DATA) as data:
+        for name in data.files:
+            speed = float(name.split("_")[-1]) / 60.0
+            found = diagnose(data[name].astype(float), 51_200.0, TONES, speed * factor)
+            part = "outer" if "OR" in name else "inner" if "IR" in name else None
+            named = [each.part for each in (*found.parts, *found.alike)]
+            right = named == [part] and found.parts[0].speed == pytest.approx(speed, rel=0.031)
+            sure = bool(named) and not right and found.confidence > 0.5
+            assert not sure or (name == "mfs_OR8_600" and found.speed_is == "unconfirmed"), name
+            assert not (named and not right and found.speed_is == "confirmed"), name
+
+
+@measured
+def test_sound_bearings_have_no_confirmed_speed_at_half_and_at_double():
+    """But for one whose second, fourth, … lines alone are loud, and one with lines of its half."""
+    unknowable = {"mfs_Normal_600": [2.0], "mfs_Normal_1200": [0.5]}
+    with np.load(DATA) as data:
+        for name in (each for each in data.files if "Normal" in each):
+            speed = float(name.split("_")[-1]) / 60.0
+            confirmed = []
+            for factor in (0.5, 1.5, 2.0, 2.5, 3.0, 4.0):
+                found = diagnose(data[name].astype(float), 51_200.0, TONES, speed * factor)
+                assert not found.parts, (name, factor)
+                confirmed += [factor] * (found.speed_is == "confirmed")
+            assert confirmed == unknowable.get(name, []), name
