@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from asperity.diagnostics import diagnose, diagnosis_sentence
+from asperity.diagnostics.prominence import Prominence
 from asperity.structures.ball_bearing import BallBearing
 from faulty_signals import faulty_signal, orders
 
@@ -93,3 +94,15 @@ def test_sound_bearings_have_no_confirmed_speed_at_half_and_at_double():
                 assert not found.parts, (name, factor)
                 confirmed += [factor] * (found.speed_is == "confirmed")
             assert confirmed == unknowable.get(name, []), name
+
+
+def test_a_comb_is_no_deeper_than_its_own_lines_beside_those_of_a_deeper_one():
+    """Lines of 90 Hz are every third of 30 Hz: a comb there is deep where it has lines between, too."""
+    amplitude = 0.01 * np.abs(np.random.default_rng(0).normal(size=1_000)) + 0.01
+    amplitude[[180, 360, 540, 720]] = 0.5
+    of_90 = Prominence.of((0.5 * np.arange(1_000.0), amplitude))
+    assert of_90.depth(30.0) == pytest.approx(0.5, rel=0.02)
+    assert of_90.depth(30.0, 90.0) < 0.02
+    assert of_90.depth(90.0, 90.0) == of_90.depth(90.0)
+    amplitude[[60, 120, 240]] = 0.3
+    assert Prominence.of((0.5 * np.arange(1_000.0), amplitude)).depth(30.0, 90.0) > 0.5
