@@ -149,6 +149,9 @@ def _document(found: Fitted) -> dict[str, Any]:
                 "before": each.free.start if each.free.given else None,
                 "value": each.value,
                 "interval": each.interval,
+                "interval_stops": {
+                    end: stop or None for end, stop in zip(("least", "largest"), each.stops, strict=True)
+                },
                 "limits": [each.free.low, each.free.high],
                 "limit": each.limit or None,
             }

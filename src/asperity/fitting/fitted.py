@@ -7,6 +7,7 @@ import numpy as np
 from asperity.arguments import Array
 from asperity.case.any_case import AnyCase
 from asperity.fitting.free import NEPER, Free
+from asperity.fitting.interval_ends import LIMIT
 from asperity.observables import observable
 from asperity.observables.observable import Measured, Values
 from asperity.written_numbers import count_of, in_a_row, rounded
@@ -26,12 +27,16 @@ class Estimate:
         95 % interval, in SI; None of a value on a limit beyond which the data want it.
     limit : str
         ``"least"`` or ``"largest"`` of a value on its limit; else empty.
+    stops : tuple of two str
+        Of the lower and the upper end of the interval why it stops there although the data allow what lies
+        beyond: at a ``"limit"`` of the key, or as what lies ``"further"`` was not tried; else empty.
     """
 
     free: Free
     value: float
     interval: tuple[float, float] | None
     limit: str
+    stops: tuple[str, str] = ("", "")
 
     @property
     def name(self) -> str:
@@ -46,6 +51,19 @@ class Estimate:
             low, high = map(self.free.words, self.interval)
             told = f"{told} ({low} to {high})"
         return told + f", on its limit ({self.free.range_source})" * bool(self.limit)
+
+    @property
+    def open_ends(self) -> list[str]:
+        """Ends at which the interval stops although the data allow what lies beyond, one sentence each."""
+        told = []
+        for stop, value, beyond in zip(self.stops, self.interval or (), ("below", "above"), strict=False):
+            if stop:
+                why = f", a limit ({self.free.range_source})" if stop == LIMIT else ", as far as was tried"
+                told.append(
+                    f"The interval of {self.name} stops at {self.free.words(value)}{why}: "
+                    f"the data allow what lies {beyond} it."
+                )
+        return told
 
 
 @dataclass(frozen=True)
@@ -185,6 +203,7 @@ class Fitted:
                 f"On a limit: {names}. What the case leaves out may be why; a range of one's own is given as "
                 f'"{limited[0].name} = least..largest".'
             )
+        told += [sentence for each in self.estimates for sentence in each.open_ends]
         if self.left_out:
             told.append(
                 "The case does not meet the data within their uncertainty: it leaves out "

@@ -24,6 +24,7 @@ from asperity.fitting.free import (
     read_free,
     read_range,
 )
+from asperity.fitting.interval_ends import Bowl, End
 from asperity.fitting.problem import Problem
 from asperity.fitting.search import (
     FINE,
@@ -115,7 +116,8 @@ def fit(
     Levels of measured over predicted values, dB, divided by their standard deviations, are made small as the
     sum of their squares (SciPy's least squares), over logarithms of what is free. Standard deviations are
     those of repeated measurements, else the usual one of the quantity, and then the scatter that is left
-    tells the intervals, by Student. A direction in which an interval would reach beyond a factor of three
+    tells the intervals, by Student. Their ends are moved outward to where the sum of squares has risen by as
+    much as it should. A direction in which an interval would reach beyond a factor of three
     either way is not determined: the key that takes part most is left as it was, and the others are fitted
     again.
 
@@ -391,11 +393,18 @@ def _told(
     spreads = determined.covariance(slopes[:, inside], spread)
     half = np.full(len(place), np.nan)
     half[inside] = spread.quantile * np.sqrt(np.diag(spreads))
+    allowed = (spread.quantile * spread.scale) ** 2
+    left = minima.best.residuals
+    bowl = Bowl(problem.residuals, place, left, slopes, problem.low, problem.high, inside, allowed)
     estimates = []
-    for each, at, by, end in zip(problem.free, place.tolist(), half.tolist(), ends.tolist(), strict=True):
-        interval = (each.end(at - by), each.end(at + by)) if np.isfinite(by) else None
+    for number, (each, at, end) in enumerate(zip(problem.free, place.tolist(), ends.tolist(), strict=True)):
+        problem.progress(number, len(place), "ends of intervals")
+        found = _interval(problem, bowl, number, float(half[number])) if number in inside else None
+        interval = (each.end(found[0].place), each.end(found[1].place)) if found else None
+        stops = (found[0].stop, found[1].stop) if found else ("", "")
         limit = {-1: "least", 0: "", 1: "largest"}[end]
-        estimates.append(Estimate(each, each.outward(at), interval, limit))
+        estimates.append(Estimate(each, each.outward(at), interval, limit, stops))
+    problem.progress(len(place), len(place), "ends of intervals")
     return Fitted(
         case.with_(**problem.changes(place)),
         case,
@@ -409,6 +418,14 @@ def _told(
         problem.beyond,
         tuple(_rivals(problem, minima, np.nan_to_num(half, nan=0.0))),
     )
+
+
+def _interval(problem: Problem, bowl: Bowl, number: int, half: float) -> tuple[End, End]:
+    """Ends of the interval of a value; of a band of roughness as slopes have it, as these take many runs."""
+    if problem.by_run and problem.free[number].band is not None:
+        at = float(bowl.place[number])
+        return End(at - half), End(at + half)
+    return bowl.end(number, -half), bowl.end(number, half)
 
 
 def _rivals(problem: Problem, minima: _Minima, half: Array) -> Iterable[dict[str, float]]:
