@@ -39,6 +39,7 @@ def test_it_writes_the_case_a_table_and_a_page(rates):
     told = json.loads(call(*FIT, "--json").stdout)
     values = {each["key"]: each["value"] for each in told["fitted"]}
     assert values == {f"track.{key}": pytest.approx(value, rel=1e-3) for key, value in TRUE.items()}
+    assert [each["interval_stops"] for each in told["fitted"]] == [{"least": None, "largest": None}] * 2
     assert set(told["files"]) == {"case", "table", "page"}
     case = read_case("fitted.toml")
     assert case.track.pad_stiffness == values["track.pad_stiffness"]
