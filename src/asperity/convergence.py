@@ -121,7 +121,7 @@ def _both(
     prepared: ReadyCase, base: xarray.Dataset, setting: Setting, way: Way, progress: Progress
 ) -> tuple[xarray.Dataset, xarray.Dataset]:
     """Levels of the finer and of the coarser computation; `base` are those of the case."""
-    case = prepared.case.with_(**prepared.chosen, **way.changes)
+    case = prepared.case.with_(**way.changes)
     changed: ReadyCase = function_named(case.PREPARED_BY)(case, "case")
     if setting.laid_anew is None:
         return _levels(changed.case, "", lambda: changed, progress), base

@@ -144,6 +144,7 @@ def prepare_case(case: AnyCase, source: str = "case") -> ReadyCase:
     return prepared
 
 
-def with_choices_fixed(case: C) -> C:
-    """A case that is searched about: what is chosen for it as it is prepared stays, whatever is tried."""
-    return case.with_(**prepare_case(case).chosen) if len(case.cells_at_rims) > 1 else case
+def with_choices_fixed(case: C, laws: tuple[str, ...]) -> C:
+    """A case that is searched about by laws: what is chosen for these stays, whatever is tried."""
+    asked = case.with_(laws=laws)
+    return case.with_(**prepare_case(asked).chosen) if len(asked.cells_at_rims) > 1 else case

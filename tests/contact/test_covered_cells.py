@@ -9,6 +9,7 @@ import pytest
 from asperity import HalfSpace, Hertz, run
 from asperity.contact.batched import processor, solve_batched
 from asperity.kernels import rims
+from asperity.laws import names, spec_of
 from asperity.reporting.contact_figures import contact_pressure
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.rim_cells import stiffness_missed
@@ -129,18 +130,36 @@ def test_a_load_and_its_approach_belong_together():
 def test_a_case_of_covered_cells_rolls_by_table_as_by_direct():
     """On a texture of a hundredth of the approach, where both see the slope of a ball on a plane."""
     surface = {"rms": "2 nm", "longest": "0.4 mm", "shortest": "80 um"}
-    contact = {"spacing": "20 um", "window": "0.5 mm", "samples": 1, "rim_cells": "auto"}
-    of = {"laws": ["table", "direct"], "duration": "4 ms", "surface": surface, "contact": contact}
-    tree = run(changed("ball-on-beam", **of))
-    told = tree["contact"].attrs
-    assert told["rim_cells"] == "covered"
-    assert re.fullmatch(r"the texture has 0\.0\d+ approaches rms .*, up to 0\.1", told["rim_cells_chosen"])
-    assert kept(tree).attrs["rim_cells"] == "covered"
-    count = f"Cells at rims count as covered: {told['rim_cells_chosen']}."
-    assert count in contact_pressure.drawn(tree).caption
-    force = tree["rolling/contact_force"]
+    contact = {"spacing": "20 um", "window": "0.5 mm", "samples": 1}
+    of = {"laws": ["table", "direct"], "duration": "4 ms", "surface": surface}
+    covered = run(changed("ball-on-beam", **of, contact=contact | {"rim_cells": "covered"}))
+    assert covered["contact"].attrs["rim_cells"] == "covered"
+    force = covered["rolling/contact_force"]
     table, direct = (force.sel(law=law).values for law in ("table", "direct"))
     assert np.sqrt(np.mean((table - direct) ** 2)) < 0.03 * direct.std()
+    tree = run(changed("ball-on-beam", **of, contact=contact))
+    told = tree["contact"].attrs
+    assert told["rim_cells"] == "covered for table and direct"
+    assert re.fullmatch(r"the texture has 0\.0\d+ approaches rms .*, up to 0\.1", told["rim_cells_chosen"])
+    assert kept(tree).attrs["rim_cells"] == "covered for table and direct"
+    count = f"Cells at rims count as covered for table and direct: {told['rim_cells_chosen']}."
+    assert count in contact_pressure.drawn(tree).caption
+    force = tree["rolling/contact_force"]
+    np.testing.assert_allclose(force.sel(law="direct").values, direct, rtol=1e-9)
+    assert np.sqrt(np.mean((force.sel(law="table").values - direct) ** 2)) < 0.03 * direct.std()
+
+
+def test_by_default_all_laws_but_those_that_see_heights_have_the_digits_of_whole_cells():
+    surface = {"rms": "20 nm", "longest": "0.4 mm", "shortest": "80 um"}
+    keys = {"laws": [*names()], "duration": "4 ms", "surface": surface}
+    contact = {"spacing": "20 um", "window": "0.5 mm", "samples": 1}
+    usual = run(changed("ball-on-beam", **keys, contact=contact))
+    whole = run(changed("ball-on-beam", **keys, contact=contact | {"rim_cells": "whole"}))
+    assert usual["contact"].attrs["rim_cells"] == "covered for table and direct"
+    for law in names():
+        found, expected = (each["rolling/contact_force"].sel(law=law).values for each in (usual, whole))
+        assert np.array_equal(found, expected) is not spec_of(law).sees_heights
+    assert (usual["contact/stiffness"] == whole["contact/stiffness"]).all()
 
 
 def test_starts_do_not_matter():

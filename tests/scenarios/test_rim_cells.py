@@ -87,8 +87,7 @@ def test_covered_cells_of_a_case_press_their_heights_by_every_law_that_solves_th
     for each, cells in ((point, "whole"), (mean, "covered")):
         assert each.shape.half_space(1e9).cells == cells
         assert each.shape.whole_half_space(None).cells == "whole"
-        of = ReducedCase(**vars(each), reduction=None, planes=None, progress=lambda *_: None)
-        law = of.build("direct")
+        law = reduced(each).build("direct")
         np.testing.assert_array_equal(law.heights, whole(each.textures.path))
         assert law.prepare(np.array([each.case.record_start])).half_space.cells == cells
 
@@ -135,48 +134,69 @@ def test_a_device_takes_whole_cells_alone(monkeypatch):
 
 
 def chosen(rms, **keys):
-    keys = {"laws": ["areal", "table"], "contact": {"samples": 2}} | keys
+    keys = {"laws": ["areal", "direct"], "contact": {"samples": 2}} | keys
     return prepared(cells="auto", surface={"rms": f"{rms} um", "longest": "0.4 mm"}, **keys)
 
 
-def test_the_texture_chooses_cells_at_rims():
+def reduced(made):
+    return ReducedCase(**vars(made), reduction=None, planes=None, progress=lambda *_: None)
+
+
+def test_the_texture_chooses_cells_at_rims_of_laws_that_see_heights():
     """The heights within the patch are a part of the rms, over an approach of 0.89 µm."""
     for rms, cells, side in ((0.02, "covered", "up to"), (0.5, "whole", "more than")):
         made = chosen(rms)
         surface = {"rms": f"{rms} um", "longest": "0.4 mm"}
-        given = prepared(cells=cells, surface=surface, laws=["areal", "table"], contact={"samples": 2})
-        assert made.shape.cells == given.shape.cells == cells
-        np.testing.assert_array_equal(made.shape.body, given.shape.body)
-        np.testing.assert_array_equal(whole(made.textures.path), whole(given.textures.path))
-        for one, other in zip(made.textures.maps, given.textures.maps, strict=True):
-            np.testing.assert_array_equal(one.heights, other.heights)
+        given = prepared(cells=cells, surface=surface, laws=["areal", "direct"], contact={"samples": 2})
+        assert made.cells_of_heights == given.shape.cells == cells
+        assert made.kinds_of_cells == tuple(dict.fromkeys(("whole", cells)))
+        assert given.kinds_of_cells == (cells,)
+        found, expected = (reduced(each).build("direct") for each in (made, given))
+        assert found.cells == cells
+        np.testing.assert_array_equal(found.body, expected.body)
+        np.testing.assert_array_equal(found.heights, expected.heights)
         within = float(re.match(r"the texture has ([\d.]+) approaches rms", made.rims)[1])
         assert 0.2 < within * made.shape.hertz.approach(made.shape.load) / (1e-6 * rms) < 1.0
         assert made.rims.endswith(f"within the contact, {side} 0.1")
         assert given.rims == ""
 
 
+def test_other_laws_keep_whole_cells_whichever_are_run_beside_them():
+    beside, alone = chosen(0.02), chosen(0.02, laws=["areal"])
+    assert (alone.cells_of_heights, alone.rims, alone.chosen) == (None, "", {})
+    assert alone.case.cells_at_rims == ("whole",)
+    assert beside.case.cells_at_rims == ("whole", "covered")
+    assert beside.shape.cells == alone.shape.cells == "whole"
+    np.testing.assert_array_equal(beside.shape.body, alone.shape.body)
+    np.testing.assert_array_equal(whole(beside.textures.path), whole(alone.textures.path))
+    for one, other in zip(beside.textures.maps, alone.textures.maps, strict=True):
+        np.testing.assert_array_equal(one.heights, other.heights)
+    assert changed("ball-on-beam").contact.rim_cells == "auto"
+
+
 def test_cells_are_whole_where_covered_ones_are_not_known(monkeypatch):
-    keys = {"kind": "wheel-on-rail", "duration": "5 ms", "wheel": {"load": "50 kN"}}
+    keys = {"kind": "wheel-on-rail", "duration": "5 ms", "wheel": {"load": "50 kN"}, "laws": ["direct"]}
     rail = {"spectrum": "iso3095", "lateral": 1.0}
-    assert prepared(**keys, cells="auto", surface=rail).shape.cells == "covered"
+    assert prepared(**keys, cells="auto", surface=rail).cells_of_heights == "covered"
     joint = prepared(**keys, cells="auto", surface=rail | {"joint_depth": "1 mm", "joint_length": "0.5 m"})
-    assert (joint.shape.cells, joint.rims) == ("whole", "covered ones have not been held to flats and joints")
+    told = "covered ones have not been held to flats and joints"
+    assert (joint.cells_of_heights, joint.rims) == ("whole", told)
     monkeypatch.setattr(rim_cells, "find_device", lambda: "a device")
     made = chosen(0.02)
-    assert (made.shape.cells, made.rims) == ("whole", "the device gpu has no others")
+    assert (made.cells_of_heights, made.rims) == ("whole", "the device gpu has no others")
 
 
 def test_what_was_chosen_is_told_before_the_run():
     rows = dict(plan(chosen(0.02), Work({}, {}, 0, None)))
-    assert rows["cells at rims"].startswith("covered: the texture has 0.")
-    assert "cells at rims" not in dict(plan(prepared(cells="whole"), Work({}, {}, 0, None)))
+    assert rows["cells at rims"].startswith("covered for direct: the texture has 0.")
+    for other in (prepared(cells="whole"), chosen(0.02, laws=["areal"])):
+        assert not any("cells at rims" in row for row in dict(plan(other, Work({}, {}, 0, None))))
 
 
 def test_a_grid_is_compared_on_heights_of_its_own_cells():
-    small = chosen(0.02)
+    small = prepared(surface={"rms": "0.02 um", "longest": "0.4 mm"}, contact={"samples": 2})
     finer = settings_for(small, np.linspace(-1e-6, 3e-6, 5))[0].ways[0].changes
-    large = prepare_case(small.case.with_(**small.chosen, **finer))
+    large = prepare_case(small.case.with_(**finer))
     assert large.case.contact.rim_cells == large.shape.cells == "covered"
     found = whole(on_the_surface_of(small, large).textures.path)
     points = whole(large.textures.points.path)
@@ -187,7 +207,7 @@ def test_a_grid_is_compared_on_heights_of_its_own_cells():
 
 def test_a_search_keeps_the_cells_of_the_case_that_it_began_with(monkeypatch):
     """Else levels would jump where a texture that is tried passes the roughness at which cells change."""
-    case, begun = chosen(0.02).case, []
+    case, begun = chosen(0.02, laws=["direct", "areal"]).case, []
 
     class Enough(Exception):
         pass
@@ -199,16 +219,27 @@ def test_a_search_keeps_the_cells_of_the_case_that_it_began_with(monkeypatch):
     monkeypatch.setattr(optimising, "_rolled", begin)
     monkeypatch.setattr(fitting, "_known", begin)
     with pytest.raises(Enough):
-        optimising.optimised(case, Aim(rms_at_least="0.02 um"), lambda *_: None)
+        optimising.optimised(case, Aim(rms_at_least="0.02 um", law="table"), lambda *_: None)
     with pytest.raises(Enough):
         fitting.fitted(case, (), (), lambda *_: None)
     assert begun == ["covered", "covered"]
     given = prepared(cells="whole").case
-    assert with_choices_fixed(given) is given
+    assert with_choices_fixed(given, given.laws) is given
+
+
+@pytest.mark.parametrize("laws", [("areal",), ("areal", "direct")])
+def test_a_search_by_other_laws_too_leaves_them_on_whole_cells(laws):
+    case = chosen(0.02).case
+    assert with_choices_fixed(case, laws).contact.rim_cells == "auto"
+    assert with_choices_fixed(case, ("direct", "table")).contact.rim_cells == "covered"
+    assert with_choices_fixed(chosen(0.02, laws=["areal"]).case, ("table",)).contact.rim_cells == "covered"
 
 
 def test_a_study_tells_that_its_members_have_unlike_cells():
-    of = [xarray.Dataset(attrs={"rim_cells": cells}) for cells in ("covered", "whole", "covered")]
+    of = [
+        xarray.Dataset(attrs={"rim_cells": cells})
+        for cells in ("covered for direct", "whole", "covered for direct")
+    ]
     (told,) = _of_cells([*of, xarray.Dataset()])
     assert told["message"].startswith("cells at rims are covered in 2 members and whole in 1, ")
     assert (told["category"], told["members"]) == ("CoarseSamplingWarning", 3)

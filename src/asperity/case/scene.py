@@ -388,7 +388,9 @@ class Case(AnyCase):
     def cells_at_rims(self) -> tuple[str, ...]:
         """How cells at the rims of its contacts may count: both ways where that is chosen by its texture."""
         asked = self.contact.rim_cells
-        return ("whole", "covered") if asked == "auto" else (asked,)
+        if asked != "auto":
+            return (asked,)
+        return ("whole", "covered") if any(spec_of(law).sees_heights for law in self.laws) else ("whole",)
 
     @classmethod
     def shared_keys(cls, cases: Sequence[Self]) -> dict[str, float]:

@@ -41,11 +41,11 @@ class ContactKeys(form.Section):
         "10 nm to 1 m: contacts lie between atoms and bodies",
     )
     rim_cells: str = key(
-        Choice(("whole", "covered", "auto")),
-        "whole",
-        "cells of the grid at the rim of a contact: in contact or not, as in CONTACT; or as far as they are "
-        "covered, so that forces grow evenly, slower, and for textures that are smooth within the contact; "
-        "or covered where the texture is as smooth as that, and else whole",
+        Choice(("auto", "whole", "covered")),
+        "auto",
+        "cells of the grid at the rim of a contact: whole ones are in contact or not, as in CONTACT; covered "
+        "ones count as far as they are covered, so that forces grow evenly, slower; auto takes covered ones "
+        "for table and direct where the texture is smooth within the contact, else whole ones",
     )
     samples: int = key(
         Number(at_least=1, at_most=10_000, whole=True),

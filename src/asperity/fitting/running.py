@@ -217,7 +217,7 @@ def fitted(
     starts: int | None = None,
 ) -> Fitted:
     """Fit a case to measurements by what may change, as `fit` does."""
-    case = with_choices_fixed(case)
+    case = with_choices_fixed(case, case.laws[:1])
     known, before = _known(case, measured, progress)
     chance = Problem(case, known, (), progress=progress).chance_of_runs()
     of_case = case_key("fit", FORMAT, case)

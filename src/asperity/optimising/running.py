@@ -219,7 +219,7 @@ def optimised(case: scene.Case, aim: Aim, progress: Progress) -> Optimised:
     before = bands_of(case, aim.longest, aim.shortest)
     if aim.lateral is not None and before.lateral is None:
         raise InputError("lateral", "bounds for a line, which has no lay", "a surface", "Remove the key.")
-    case = with_choices_fixed(case)
+    searched_about = with_choices_fixed(case, (aim.law,))
     limits = aim.limits(before.levels[before.changed])
     numbers = itertools.count(1)
 
@@ -228,13 +228,14 @@ def optimised(case: scene.Case, aim: Aim, progress: Progress) -> Optimised:
         progress(number, number + 1, f"texture {number}: {words}")
 
     def roll(levels: Array, lateral: float | None) -> Trial:
-        return _rolled(case, aim, measure, before.with_changed(levels, lateral), progress)
+        return _rolled(searched_about, aim, measure, before.with_changed(levels, lateral), progress)
 
     start = roll(before.levels[before.changed], before.lateral)
     lay = None if aim.lateral is None else (aim.lateral[0], aim.lateral[1])
     trials, settled = search(roll, start, limits, aim.limit, lay, report)
     after = before.with_changed(trials[-1].levels, trials[-1].lateral)
     laws = tuple(dict.fromkeys((aim.verify, aim.law)))
+    case = with_choices_fixed(case, laws)
     found = with_texture(case, after)
     results = [run(each.with_(laws=laws), progress) for each in (with_texture(case, before), found)]
     return Optimised(aim, measure, limits, before, after, tuple(trials), settled, found, *results)

@@ -58,13 +58,13 @@ class ReducedCase(PreparedCase):
     def _of_law(self, spec: LawSpec) -> Materials:
         case = self.case
         contact = self.case.contact
-        shape = self.shape
+        shape, textures = self.of_heights if spec.sees_heights else (self.shape, self.textures)
         made_by: dict[str, Callable[[], Any]] = {
             "line": partial(self._line, spec),
             "areal": self._areal,
             "plane": lambda: self.plane,
             "table": self._table,
-            "heights": lambda: self.textures.surface.rows(0, self.textures.surface.shape[0]),
+            "heights": lambda: textures.surface.rows(0, textures.surface.shape[0]),
         }
         if self.reduction is not None:
             ensemble = self.reduction.ensemble
@@ -140,11 +140,12 @@ class ReducedCase(PreparedCase):
     def path_scan(self) -> ScannedForces:
         """The scan of the path, state after state: motions that visit others share them."""
         scans = []
+        shape, textures = self.of_heights
         for state in range(self.scanned.start, self.scanned.stop):
             job = ScanJob(
-                self.shape.half_space(self.case.contact.hardness), self.textures.surface, self.shape.body,
+                shape.half_space(self.case.contact.hardness), textures.surface, shape.body,
                 self._reduced.approaches[state], table_stride(self),
-                rtol_for(self.case.numerics.force_accuracy), self._scanned_planes, self.textures.before,
+                rtol_for(self.case.numerics.force_accuracy), self._scanned_planes, textures.before,
             )  # fmt: skip
             told = {"progress": self.progress, "message": "scanning the path"}
             scans.append(scan_forces(job, mapped=True, cache=Store(), **told))
@@ -172,9 +173,10 @@ class ReducedCase(PreparedCase):
         """The scan of the path, to look forces up in."""
         rows = self._scanned_rows
         dx = self.shape.spacing[0]
-        body = self.shape.body
-        if self.textures.defects is not None:
-            touches = first_touch(self.textures.surface, body, rows.step, rows.start) + self._scanned_planes
+        shape, textures = self.of_heights
+        body = shape.body
+        if textures.defects is not None or shape is not self.shape:
+            touches = first_touch(textures.surface, body, rows.step, rows.start) + self._scanned_planes
         else:
             assert self._reduced.touches is not None
             touches = self._reduced.touches[rows]

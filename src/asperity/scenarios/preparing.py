@@ -150,25 +150,26 @@ def scans_of(prepared: PreparedCase, states: Array) -> dict[str, list[ScanJob]]:
     case = prepared.case
     shape = prepared.shape
     textures = prepared.textures
-    half_space = shape.half_space(None)
 
     def scans(
-        strips: Sequence[Strip], of: slice, stride: int, accuracy: float, anchor: int = 0
+        strips: Sequence[Strip], on: Geometry, of: slice, stride: int, accuracy: float, anchor: int = 0
     ) -> list[ScanJob]:
-        rtol = rtol_for(accuracy * case.numerics.force_accuracy)
+        half_space, rtol = on.half_space(None), rtol_for(accuracy * case.numerics.force_accuracy)
         at = states[of]
-        return [ScanJob(half_space, strip, shape.body, at, stride, rtol, anchor=anchor) for strip in strips]
+        return [ScanJob(half_space, strip, on.body, at, stride, rtol, anchor=anchor) for strip in strips]
 
     found = {}
     if strips := [strip for strip in textures.strips if strip.heights.any()]:
         every = 1 if Need.FILTER in needs_of(case.laws) else reducing.SHOWN
         shown = slice((len(states) - 1) % every, None, every)
-        found["filters"] = scans(strips, shown, reducing.filter_stride(shape), FILTER_SHARE)
+        found["filters"] = scans(strips, shape, shown, reducing.filter_stride(shape), FILTER_SHARE)
     if Need.SCAN in needs_of(case.laws) and textures.path is not None:
         visited = slice(None)
         if case.contact.approaches is None:
             visited = states_expected(states, reducing.nominal_forces(shape), prepared.scene.loads)
-        found["path"] = scans([textures.path], visited, table_stride(prepared), 1.0, textures.before)
+        on, over = prepared.of_heights
+        assert over.path is not None
+        found["path"] = scans([over.path], on, visited, table_stride(prepared), 1.0, textures.before)
     return found
 
 
@@ -341,7 +342,7 @@ def expect(prepared: PreparedCase, progress: Progress) -> Work:
     doubt_deflection(prepared)
     with one_thread_in_linear_algebra():
         if prepared.textures.maps:
-            compiling.compile_kernels(progress, prepared.shape.cells)
+            compiling.compile_kernels(progress, *prepared.kinds_of_cells)
             trial = try_contacts(prepared, progress)
     scans = scan_sizes(prepared)
     steps = case.steps_taken

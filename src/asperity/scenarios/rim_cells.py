@@ -27,23 +27,24 @@ From ``benchmarks/cell_rims.py --check``.
 
 
 def with_rims(prepared: PreparedCase) -> PreparedCase:
-    """The case with gaps of cells, not of points, where those at rims count as far as they are covered."""
-    cells = prepared.case.contact.rim_cells
-    why = ""
-    if cells == "auto":
-        cells, why = _chosen(prepared)
-    if cells == "whole":
-        return replace(prepared, rims=why)
-    return replace(
-        prepared, shape=prepared.shape.over_cells(), textures=prepared.textures.over_cells(), rims=why
-    )
+    """The case with gaps of cells, not of points, where those at rims count as far as they are covered.
+
+    Where that is left to the case it is so for laws that see heights, alone: they follow the stiffness of
+    single contacts, and a law has the same digits whichever others are run beside it.
+    """
+    case = prepared.case
+    if case.contact.rim_cells == "covered":
+        cells = prepared.shape.over_cells(), prepared.textures.over_cells()
+        return replace(prepared, shape=cells[0], textures=cells[1])
+    if len(case.cells_at_rims) == 1 or not prepared.textures.maps:
+        return prepared
+    kind, why = _chosen(prepared)
+    return replace(prepared, cells_of_heights=kind, rims=why)
 
 
 def _chosen(prepared: PreparedCase) -> tuple[str, str]:
-    """Kind of cells that suits a case, and why."""
+    """Kind of cells that suits laws which see heights, and why."""
     case, shape, maps = prepared.case, prepared.shape, prepared.textures.maps
-    if not maps:
-        return "whole", "no contact is solved on them"
     if case.has_defect:
         return "whole", "covered ones have not been held to flats and joints"
     if find_device() is not None:

@@ -10,6 +10,7 @@ import numpy as np
 from asperity.arguments import Array, ArrayLike, Complex, as_row
 from asperity.case.scene import Case
 from asperity.errors import InputError
+from asperity.laws import spec_of
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.textures import Textures
 from asperity.structures.body import Body, Wheel
@@ -137,16 +138,41 @@ class PreparedCase:
     scene: Scene  # what rolls over what
     shape: Geometry  # the gap of the bodies on the contact grid
     textures: Textures  # what is rolled over
-    rims: str = ""  # why cells at rims count as they do, where that was chosen
+    # how cells at rims count for laws that see heights, where that was chosen, and why
+    cells_of_heights: str | None = None
+    rims: str = ""
     caught: tuple[warnings.WarningMessage, ...] = ()  # warnings met on the way
     seconds: dict[str, float] = field(default_factory=dict)  # wall time of each part, s
     processor: float = 0.0  # time that preparing took, s
 
     @property
+    def rim_cells(self) -> str:
+        """How cells at rims count, in words: with the laws whose contacts have others than the samples."""
+        if self.cells_of_heights != "covered":
+            return self.shape.cells
+        return f"covered for {' and '.join(law for law in self.case.laws if spec_of(law).sees_heights)}"
+
+    @property
+    def kinds_of_cells(self) -> tuple[str, ...]:
+        """Kinds of cells, as in `HalfSpace`, on which its contacts are solved."""
+        return tuple(dict.fromkeys((self.shape.cells, self.cells_of_heights or self.shape.cells)))
+
+    @property
+    def of_heights(self) -> tuple[Geometry, Textures]:
+        """Gap of the bodies and textures for laws that see heights, on cells that may be theirs alone."""
+        if self.cells_of_heights != "covered":
+            return self.shape, self.textures
+        return self.shape.over_cells(), self.textures.over_cells()
+
+    @property
     def chosen(self) -> dict[str, str]:
-        """Keys that were chosen for it: cells at rims, where the case leaves them open."""
-        left_open = self.case.contact.rim_cells == "auto"
-        return {"contact.rim_cells": self.shape.cells} if left_open else {}
+        """Keys that hold what was chosen, whatever else of the case is changed: cells at rims.
+
+        Where some of its laws do not see heights none do, as a key holds for all laws.
+        """
+        kind = self.cells_of_heights
+        seeing = all(spec_of(law).sees_heights for law in self.case.laws)
+        return {"contact.rim_cells": kind} if kind is not None and seeing else {}
 
 
 # --- the linear reference in the frequency domain: roughness moved between a wheel and a rail at rest

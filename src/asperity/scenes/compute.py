@@ -113,7 +113,7 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
         seconds[part] = now - last
         last = now
 
-    compiling.compile_kernels(progress, prepared.shape.cells)  # not before the files are known to be right
+    compiling.compile_kernels(progress, *prepared.kinds_of_cells)  # not before files are known to be right
     book("compiled functions")
     over = _in_time(scene, case, store, progress)
     book("what is rolled over")

@@ -212,7 +212,7 @@ def _reduced(computed: Computed, reduction: Reduction) -> Values:
         contact.CONTACT_AREA: working.area,
         contact.CONTACT_AREA_RATIO: reduction.pressed.area_ratio,
         contact.ISOLATED_SHARE: reduction.pressed.isolated_share,
-        contact.RIM_CELLS: shape.cells,
+        contact.RIM_CELLS: computed.rim_cells,
         **({contact.RIM_CELLS_CHOSEN: computed.rims} if computed.rims else {}),
         contact.RMS_SLOPE: computed.textures.rms_slope,
         contact.SAMPLES: len(ensemble.forces),

@@ -45,7 +45,7 @@ def plan(prepared: PreparedCase, work: Work, choice: LawChoice | None = None) ->
         ("contact", f"{nx} × {ny} cells, {count_of(contact.samples, 'sample')}, {states} approaches"),
     ]
     if prepared.rims:
-        rows.append(("cells at rims", f"{prepared.shape.cells}: {prepared.rims}"))
+        rows.append(("cells at rims", f"{prepared.rim_cells}: {prepared.rims}"))
     if work.tried is not None:  # a sample
         share = f"about {100 * work.tried.pressed.area_ratio:.0f} % of the area of smooth bodies"
         rows.append(("real contact", share))

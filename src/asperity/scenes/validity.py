@@ -288,7 +288,7 @@ def _whole_cells(prepared: PreparedCase, pressed: PressedSamples) -> Iterator[Fi
     """Laws that solve the contact at each step on cells that are in contact or not: their stiffness jumps."""
     case, shape = prepared.case, prepared.shape
     solving = tuple(law for law in case.laws if spec_of(law).solved_every_step)
-    if not solving or shape.cells != "whole":
+    if not solving or (prepared.cells_of_heights or shape.cells) != "whole":
         return
     missed = rim_cells.stiffness_missed(shape)
     samples = [shape.body - each.undeformed_gap for each in pressed.contacts]

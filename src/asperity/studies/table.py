@@ -146,9 +146,10 @@ def _of_cells(tables: Sequence[xarray.Dataset]) -> Iterator[dict[str, Any]]:
     """A warning where cells at rims were chosen otherwise for some members than for others."""
     cells = Counter(table.attrs[CHOSEN_CELLS] for table in tables if CHOSEN_CELLS in table.attrs)
     if len(cells) > 1:
+        covered = sum(cells.values()) - cells["whole"]
         message = (
-            f"cells at rims are covered in {count_of(cells['covered'], 'member')} and whole in "
-            f"{cells['whole']}, as their textures are smooth within the contact or not: between these kinds "
+            f"cells at rims are covered in {count_of(covered, 'member')} and whole in {cells['whole']}, as "
+            "their textures are smooth within the contact or not: between these kinds "
             "levels differ by the grid, too, by some tenths of a dB. Set contact.rim_cells to one of both."
         )
         grade = {"category": CoarseSamplingWarning.__name__, "grade": Grade.WARNING.value}
