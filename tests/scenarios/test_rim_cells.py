@@ -11,12 +11,13 @@ import xarray
 
 from asperity.errors import Grade, InputError
 from asperity.fitting import running as fitting
+from asperity.laws import spec_of
 from asperity.optimising import running as optimising
 from asperity.optimising.definition import Aim
 from asperity.running import prepare_case, with_choices_fixed
 from asperity.scenarios import problems, reducing, rim_cells
 from asperity.scenarios.laws import ReducedCase, reduced_case
-from asperity.scenarios.preparing import Work
+from asperity.scenarios.preparing import Work, scans_of
 from asperity.scenarios.reducing import samples_of
 from asperity.scenarios.refining import on_the_surface_of, settings_for
 from asperity.scenarios.textures import textures_under
@@ -161,6 +162,17 @@ def test_the_texture_chooses_cells_at_rims_of_laws_that_see_heights():
         assert given.rims == ""
 
 
+def test_a_table_by_choice_scans_what_one_of_covered_cells_does():
+    keys = {"surface": {"rms": "0.02 um", "longest": "0.4 mm"}, "laws": ["table"]}
+    made, given = (prepared(cells=cells, contact={"samples": 2}, **keys) for cells in ("auto", "covered"))
+    jobs = [scans_of(each, np.linspace(0.0, 1e-6, reducing.STATES))["path"][0] for each in (made, given)]
+    assert [job.half_space.cells for job in jobs] == ["covered", "covered"]
+    np.testing.assert_array_equal(*(job.body for job in jobs))
+    np.testing.assert_array_equal(*(whole(job.surface) for job in jobs))
+    found, expected = (reduced_case(each, lambda *_: None)._table().touches for each in (made, given))
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=2e-15)  # planes are told to a femtometre
+
+
 def test_other_laws_keep_whole_cells_whichever_are_run_beside_them():
     beside, alone = chosen(0.02), chosen(0.02, laws=["areal"])
     assert (alone.cells_of_heights, alone.rims, alone.chosen) == (None, "", {})
@@ -171,6 +183,7 @@ def test_other_laws_keep_whole_cells_whichever_are_run_beside_them():
     np.testing.assert_array_equal(whole(beside.textures.path), whole(alone.textures.path))
     for one, other in zip(beside.textures.maps, alone.textures.maps, strict=True):
         np.testing.assert_array_equal(one.heights, other.heights)
+    assert [reduced(beside)._of_law(spec_of(law)).cells for law in beside.case.laws] == ["whole", "covered"]
     assert changed("ball-on-beam").contact.rim_cells == "auto"
 
 
@@ -263,7 +276,7 @@ def test_whole_cells_under_a_smooth_texture_are_doubted_by_a_number():
     level = 20.0 * math.log10(1.0 + missed)
     assert f"up to {100 * missed:.2g} %, about {level:.2g} dB" in found.value
     assert 'Set contact.rim_cells = "covered"' in found.message
-    assert doubts(0.01, cells="covered")[1] == []
+    assert doubts(0.01, cells="covered")[1] == doubts(0.01, cells="auto")[1] == []
     assert doubts(0.01, laws=["areal", "table"])[1] == []
     assert doubts(1.0)[1] == []  # so rough that many cells enter at once
 

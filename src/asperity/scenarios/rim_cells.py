@@ -36,7 +36,7 @@ def with_rims(prepared: PreparedCase) -> PreparedCase:
     if case.contact.rim_cells == "covered":
         cells = prepared.shape.over_cells(), prepared.textures.over_cells()
         return replace(prepared, shape=cells[0], textures=cells[1])
-    if len(case.cells_at_rims) == 1 or not prepared.textures.maps:
+    if len(case.cells_at_rims) == 1:
         return prepared
     kind, why = _chosen(prepared)
     return replace(prepared, cells_of_heights=kind, rims=why)
