@@ -66,7 +66,7 @@ def test_it_starts_as_the_static_solution_and_carries_the_load():
 def test_balls_come_to_rest_in_few_steps(monkeypatch):
     """A step that had to be halved is not tried again at its whole length: laws are asked some 30 times."""
     asked = []
-    monkeypatch.setattr(rest, "evaluated", lambda law, at: asked.append(at) or evaluated(law, at))
+    monkeypatch.setattr(rest, "evaluated", lambda *of: asked.append(of) or evaluated(*of))
     turned_by(duration=1e-4, settling=0.0)
     laws, rests = 2 * B6205.balls, INSTANTS + 1
     assert 10 < len(asked) / laws / rests < 40

@@ -15,7 +15,7 @@ from asperity.rolling.course import Course, laid_out
 from asperity.rolling.ground import ground_of, warn_if_bent
 from asperity.rolling.ledger import Ledger, ledger_of
 from asperity.rolling.mechanism import Mechanism
-from asperity.rolling.rest import set_down
+from asperity.rolling.rest import standing
 from asperity.rolling.soundness import warn_of_counts
 from asperity.rolling.stepper import Stepper
 from asperity.store import Checkpoint
@@ -171,4 +171,5 @@ def rest_of(mechanism: Mechanism, step: int, load: float) -> Array:
     loads = np.full(course.contacts, load)
     system = assembly.system_of(ground, course.bodies, loads, 1.0, mechanism.constant)
     laws = [laid_out(contact, at) for contact in mechanism.contacts]
-    return set_down(ground, course.bodies, system, laws)[1].displacement[: mechanism.first_modes[-1]]
+    rest = standing(ground, course.bodies, system, laws)
+    return rest.motion.displacement[: mechanism.first_modes[-1]]

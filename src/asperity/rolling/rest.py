@@ -166,12 +166,12 @@ def set_down(
     each other; without constant forces on any structure they stay where they are.
     """
     damping = np.array([law.damping if isinstance(law, Prepared) else 0.0 for law in prepared])
-    rest = _at_rest(ground, bodies, system, prepared, np.zeros(len(damping)))
+    rest = standing(ground, bodies, system, prepared)
     closer = _move_on(ground, bodies, system, rest, entering)
     most = np.maximum(rest.motion.force[0], 0.0)  # of what hardly touches it is not known
     dampers = np.clip(damping * closer, -most, most)
     if np.any(np.abs(dampers) > TOLERANCE * system.loads):  # as the rest moves on, they press, too
-        rest = _at_rest(ground, bodies, system, prepared, dampers)
+        rest = standing(ground, bodies, system, prepared, dampers)
         closer = _move_on(ground, bodies, system, rest, entering)
     rest.motion.approach[1] -= system.time_step * closer
     return rest.stiffness, rest.motion
@@ -225,15 +225,16 @@ class Rest:
     rates: Array  # (n,), how fast a rail moves under them, m/s
 
 
-def _at_rest(
+def standing(
     ground: Ground,
     bodies: Sequence[Body],
     system: System,
     prepared: Sequence[Prepared | SteppedLaw],
-    dampers: Array,
+    dampers: Array | None = None,
 ) -> Rest:
-    """Everything at rest, with forces of the contacts' dampers (n,), N."""
+    """Everything at rest under its loads, with forces of the contacts' dampers (n,), N, where they press."""
     n = len(system.loads)
+    dampers = np.zeros(n) if dampers is None else dampers
     shapes = shapes_at_contacts(ground, system)
     softness = _softness(system)
     constant = np.pad(system.constant, (0, len(softness) - len(system.constant)))
