@@ -34,7 +34,8 @@ from asperity.laws.film import WithFilm
 from asperity.reference.materials import material
 from asperity.rolling.bearing import BearingRings, RolledBearing, roll_bearing
 from asperity.rolling.roll import roll_bodies
-from asperity.scenarios.raceway_laws import ball_heights, raceway_laws, raceway_on
+from asperity.scenarios.raceway_grids import raceway_on
+from asperity.scenarios.raceway_laws import ball_heights, raceway_laws
 from asperity.store import Store
 from asperity.structures.beam import Beam
 from asperity.structures.body import Body

@@ -25,7 +25,8 @@ from asperity.laws.layout import force
 from asperity.laws.periodic import Periodic
 from asperity.reduction.texture import StateTexture
 from asperity.rolling.bearing import BearingRings, roll_bearing
-from asperity.scenarios.raceway_laws import raceway_laws, raceway_on
+from asperity.scenarios.raceway_grids import raceway_on
+from asperity.scenarios.raceway_laws import raceway_laws
 from asperity.structures.ring import Ring
 from asperity.surfaces.faults import Fault
 

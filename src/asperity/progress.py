@@ -127,14 +127,17 @@ class _Piece:
 
     def _is_told_by_others(self) -> bool:
         """Whether the rate is known without the first time: from enough steps, or as these were kept."""
-        (first, before), (second, between), (last, done) = self._seen[0], self._seen[1], self._seen[-1]
+        first, before = self._seen[0]
+        second, between = self._seen[1]
+        last, done = self._seen[-1]
         quick = (second - first) * (done - between) < KEPT * (last - second) * (between - before)
         return done - between >= FEWEST or (done > between > before and quick)
 
     @property
     def left(self) -> float:
         """Time that the rest will take, s; zero before anything is done."""
-        (first, before), (last, done) = self._seen[0], self._seen[-1]
+        first, before = self._seen[0]
+        last, done = self._seen[-1]
         return (self.total - done) * (last - first) / (done - before) if done > before else 0.0
 
     @property

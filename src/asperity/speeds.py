@@ -92,10 +92,14 @@ class SpeedCourse(float):
             return distance / float(self.speeds[0])
         marks = np.append(self.covered(self.times), np.inf)
         k = int(np.searchsorted(marks, distance)) - 1
-        start, speed, rise = 0.0, float(self.speeds[0]), 0.0
+        start = 0.0
+        speed = float(self.speeds[0])
+        rise = 0.0
         left = distance
         if k >= 0:
-            start, speed, left = float(self.times[k]), float(self.speeds[k]), distance - float(marks[k])
+            start = float(self.times[k])
+            speed = float(self.speeds[k])
+            left = distance - float(marks[k])
             if k + 1 < len(self.times):
                 rise = float((self.speeds[k + 1] - self.speeds[k]) / (self.times[k + 1] - self.times[k]))
         # the smaller root of v t + a t²/2 = s, in the form that holds for a = 0, too

@@ -73,7 +73,8 @@ def in_order(task: Callable[[T], R], items: Iterable[T], workers: int | None = N
     if count == 1:
         yield from map(task, items)
         return
-    waiting, pending = iter(items), deque[Future[R]]()
+    waiting = iter(items)
+    pending = deque[Future[R]]()
     stopped = threading.Event()
     executor = ThreadPoolExecutor(count, initializer=setattr, initargs=(_here, "stopped", stopped))
     try:

@@ -8,7 +8,8 @@ from numpy.testing import assert_allclose
 from asperity import BallBearing, HalfSpace
 from asperity.errors import InputError, OutOfRangeWarning
 from asperity.laws.layout import force
-from asperity.scenarios.raceway_laws import FOLLOWED, OnRaceway, ball_heights, raceway_laws, raceway_on
+from asperity.scenarios.raceway_grids import FOLLOWED, raceway_on
+from asperity.scenarios.raceway_laws import OnRaceway, ball_heights, raceway_laws
 from asperity.surfaces.faults import Fault
 from asperity.surfaces.raceway import AroundTexture
 

@@ -515,11 +515,12 @@ KILLED_HALF_WAY = """
 import os, signal, sys
 import asperity
 from asperity.rolling import bearing, stepper
-from asperity.scenarios import raceway_laws
+from asperity.scenarios import raceway_grids, raceway_laws
 from asperity.scenarios.prepared_bearing import prepare_bearing
 from asperity.scenes.computed_bearing import compute_bearing
 
-raceway_laws.CELLS, bearing.INSTANTS, stepper.SAVE_EVERY = (3, 4), 1, 0.0
+raceway_grids.CELLS = raceway_laws.CELLS = (3, 4)
+bearing.INSTANTS, stepper.SAVE_EVERY = 1, 0.0
 
 def progress(done, total, message):
     if message == "rolling" and done >= 0.5 * total:

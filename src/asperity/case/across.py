@@ -368,7 +368,9 @@ def meeting_of(case: Case, clear: float | None = None) -> Meeting:
     As they lie, where the inclination of a rail towards the middle of the track is given. They meet at least
     `clear` m, by default half of the window, inside of what is known of them.
     """
-    body, over, (tread, head) = case.rolling, case.rolled_over, section_keys(case)
+    body = case.rolling
+    over = case.rolled_over
+    tread, head = section_keys(case)
     inclination = None
     shift = 0.0
     if "sideways" in case.inner and case.sideways.rail_inclination is not None:

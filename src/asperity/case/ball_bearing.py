@@ -63,7 +63,8 @@ MOST_STEPS = 10**8
 FEWEST = 5.0
 """Periods of the slowest tone in a record, at least."""
 _SPEED = Speed("Hz", "1/min", above=0)
-_BAND, _ANGLES = ListOf(Quantity("Hz", at_least=0), least=2), ListOf(Quantity("rad"), least=1)
+_BAND = ListOf(Quantity("Hz", at_least=0), least=2)
+_ANGLES = ListOf(Quantity("rad"), least=1)
 _RATE = Quantity("Hz", above=0)
 _SLIPS = ListOf(Number(at_least=0, at_most=0.2), least=2)
 

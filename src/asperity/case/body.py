@@ -24,7 +24,8 @@ DEEPEST_FLAT = 0.01  # of the radius
 CLOSE_LENGTH = 0.05  # by which a measured length may differ from that of the chord
 COUNT = Number(at_least=1, at_most=MOST_CONTACTS, whole=True)
 MASS, FORCE = Quantity("kg", above=0), Quantity("N", above=0)
-STIFFNESS, DAMPING = Quantity("N/m", above=0), Quantity("N s/m", at_least=0)
+STIFFNESS = Quantity("N/m", above=0)
+DAMPING = Quantity("N s/m", at_least=0)
 INERTIA = Quantity("kg m^2", above=0)
 _BODIES = "bodies that roll lie between"
 _FLAT = {"goes_with": "flat_depth or flat_length"}

@@ -109,7 +109,8 @@ def written_course(course: SpeedCourse, dimension: str, unit: str, *, exactly: b
         (written(time, "s", "s", exactly=exactly), written(speed, dimension, unit, exactly=exactly))
         for time, speed in course.points
     ]
-    (_, first), (end, last) = points[0], points[-1]
+    _, first = points[0]
+    end, last = points[-1]
     if len(points) == 2 and course.times[0] == 0.0 and unit_in(first) == unit_in(last):
         text = f"{first.removesuffix(unit_in(first)).strip()}..{last} in {end}"
         if not exactly or kind(text) == course:
@@ -121,7 +122,8 @@ def span_of(speed: float, factor: float = 1.0) -> str:
     """A speed in words, times a factor: one number, or from the first to the last of a course."""
     if not isinstance(speed, SpeedCourse):
         return rounded(factor * speed, 5)
-    first, last = factor * speed.speeds[0], factor * speed.speeds[-1]
+    first = factor * speed.speeds[0]
+    last = factor * speed.speeds[-1]
     return f"{rounded(float(first), 5)} to {rounded(float(last), 5)}"
 
 

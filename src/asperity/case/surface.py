@@ -321,7 +321,8 @@ def surfaces_from(
     if problems:
         raise Problems(problems)
     try:
-        step, unit = LENGTH(keys.pop(spacing)), LengthUnit()(keys.pop(unit, None) or "m")
+        step = LENGTH(keys.pop(spacing))
+        unit = LengthUnit()(keys.pop(unit, None) or "m")
         scaled = real_array(name, heights, "an array of real numbers") * factor(unit, "m")
         made = tuple(
             HeightMap(each, (step, step)) if each.ndim == 2 else Profile(each, step)

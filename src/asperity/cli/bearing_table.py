@@ -16,7 +16,8 @@ from asperity.studies.definition import expanded, separated
 from asperity.terminal import say, say_table
 from asperity.written_numbers import count_of, rounded
 
-SPEED, ANGLE = Quantity("Hz", "1/min", at_least=0), Quantity("rad")
+SPEED = Quantity("Hz", "1/min", at_least=0)
+ANGLE = Quantity("rad")
 SWEPT = {"radial": LOAD, "axial": LOAD, "speed": SPEED}
 """What may have several values."""
 MOST = 10_000

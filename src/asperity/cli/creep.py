@@ -84,7 +84,9 @@ def show_creep(
 
 def _told_curve(curve: CreepCurve, load: float, source: str) -> Told:
     """Forces over what friction carries; of rough samples their mean."""
-    limit, name, (slope, *rough) = curve.limit, NAMES[curve.direction], curve.slopes
+    limit = curve.limit
+    name = NAMES[curve.direction]
+    slope, *rough = curve.slopes
     title = f"{source}: {engineering(load, 'N')}, friction {rounded(limit / load, 4)}, {curve.direction}"
     smooth = curve.force[0] / limit
     samples = curve.force[1:] / limit

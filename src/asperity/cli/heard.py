@@ -260,7 +260,8 @@ def _lines_of(
     """Lines of each part at the speed of a diagnosis: of those it names where it found them; None if not
     resolved."""
     named = {each.part: each.blows for each in diagnosis.parts}
-    reached, step = spectrum[0][-1], spectrum[0][1]
+    reached = spectrum[0][-1]
+    step = spectrum[0][1]
     found: dict[str, LineFamily | None] = {}
     for part, tone in tones.items():
         nominal, distance = tone.order * diagnosis.speed, tone.modulation * diagnosis.speed

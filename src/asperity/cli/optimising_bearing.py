@@ -117,7 +117,8 @@ def _waves(found: OptimisedBearing) -> Drawn:
             level = rms * 10.0 ** (change / 20.0)
             lines.append(Line(middle, level, f"{name}, {words}", colour, dashes, marker="o"))
     if lines:
-        low, high = min(every) / panels.EDGE, max(every) * panels.EDGE
+        low = min(every) / panels.EDGE
+        high = max(every) * panels.EDGE
         along = Axis("waves per turn", low, high, log=True)
         yield Panel(along, Axis("rms of the third octave / nm", log=True), tuple(lines), height=3.2)
     yield "Dotted the waves of the case, drawn through those found."

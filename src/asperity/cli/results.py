@@ -71,7 +71,8 @@ def write_measured(run: Path, folder: Path | None, what: str | None, format: str
     """Write signals of a run, by default into ``signals`` beside it."""
     target = _folder_beside(run, folder, "signals")
     files = signal_files.write_signals(read_result(run), target, format=format, what=what)
-    count, table = count_of(len(files), "file"), signal_files.TABLE
+    count = count_of(len(files), "file")
+    table = signal_files.TABLE
     say(f"Signals: {target.absolute()}, {count}; {table} says what they are")
     return {"run": run.resolve(), "files": {path.name: path for path in files}}
 

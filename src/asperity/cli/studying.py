@@ -74,7 +74,8 @@ def run_study(
     from asperity.studies.cluster import cluster
     from asperity.studies.running import study as computed
 
-    asked, heard = tables.chosen(show), _signals(**signals)
+    asked = tables.chosen(show)
+    heard = _signals(**signals)
     if scheduler is not None and workers is not None:
         raise InputError("--workers", "a number beside --scheduler", "one of them")
     files.refuse_unwritable(directory, "folder of the results", "Choose another folder with -o.")

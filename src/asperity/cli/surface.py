@@ -36,8 +36,10 @@ Spectra = dict[str, tuple[Array, Array]]
 """Wavenumbers, cycles/m, above zero, and one-sided PSD, m³, by the direction of the lines."""
 AREAL = "areal"
 SLOPE_POINTS = 2 * statistics.MARGIN + 1
-RAILS, KILOMETRES = 1e-4, 100.0 / 3.6
-"""Spacing of points, m, from which on they are those of a rail or a wheel, and the speed, m/s, of these."""
+RAILS = 1e-4
+"""Spacing of points, m, from which on they are those of a rail or a wheel."""
+KILOMETRES = 100.0 / 3.6
+"""Speed of rails and wheels, m/s."""
 
 
 def show_surface(
@@ -143,7 +145,8 @@ def _show(
     elif count > 1 and not beside:
         say(f"Statistics of the first of {count} maps; choose another one with --index.")
         title += f", the first of {count} maps"
-    (band, section), octaves = _filtered(first, steps), _third_octaves(lines)
+    band, section = _filtered(first, steps)
+    octaves = _third_octaves(lines)
     if isinstance(first, HeightMap):
         spectra = _spectra_of_map(first)
         items = [(item, item.value, item.value) for item in statistics.areal_statistics(first, band)]

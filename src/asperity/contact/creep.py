@@ -123,7 +123,9 @@ class RollingEllipse:
         J. J. Kalker, Vehicle System Dynamics 11 (1982) 1: each cell is displaced by its own traction alone,
         with the flexibilities of the linear theory, under a parabolic bound.
         """
-        (a, b), (c11, c22, c23), g = self.semi_axes, self.coefficients, self.shear_modulus
+        a, b = self.semi_axes
+        c11, c22, c23 = self.coefficients
+        g = self.shear_modulus
         l1, l2 = 8.0 * a / (3.0 * g * c11), 8.0 * a / (3.0 * g * c22)
         l3 = math.pi * a * math.sqrt(a / b) / (4.0 * g * c23)
         y = b * (2.0 * (np.arange(STRIPS) + 0.5) / STRIPS - 1.0)

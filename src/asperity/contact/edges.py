@@ -104,7 +104,8 @@ def softness_at(edges: Edges, modulus: float, hardness: float | None) -> Softnes
 
 def _kept(place: Array, slant: Array) -> Array:
     """Values between those of the curves."""
-    x, y = (place - FIRST) * PER_UNIT, np.sqrt(slant) * (SLANTS - 1)
+    x = (place - FIRST) * PER_UNIT
+    y = np.sqrt(slant) * (SLANTS - 1)
     i, j = (np.minimum(each.astype(int), most) for each, most in ((x, KNOTS - 2), (y, SLANTS - 2)))
     x, y = x - i, y - j
     one, other = ((1.0 - x) * KEPT[j + k, i] + x * KEPT[j + k, i + 1] for k in (0, 1))

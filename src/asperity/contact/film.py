@@ -170,7 +170,8 @@ class Film:
 
     def groups(self, force: float) -> Groups:
         """Numbers on which it depends under a force, N."""
-        modulus, radius = 2.0 * self.contact.modulus, self.radius
+        modulus = 2.0 * self.contact.modulus
+        radius = self.radius
         return Groups(
             self.viscosity * self.speed / (modulus * radius),
             self.pressure_viscosity * modulus,
@@ -274,7 +275,8 @@ class LineFilm(Film):
 
     def groups(self, force: float) -> Groups:
         """Numbers on which it depends under a force, N."""
-        modulus, radius = 2.0 * self.contact.modulus, self.radius
+        modulus = 2.0 * self.contact.modulus
+        radius = self.radius
         return Groups(
             self.viscosity * self.speed / (modulus * radius),
             self.pressure_viscosity * modulus,

@@ -88,7 +88,8 @@ def _shifted(found: SlidingContact, before: SlidingContact | None, displacement:
     slip[found.sticks] = 0.0
     coefficient = _over(found.bound, now)
     if before is not None and ((now == 0.0) & (past > 0.0)).any():  # as it leaves the contact it slips freely
-        (x, y), (xi, eta, spin) = cell_places(found.normal.half_space), found.creepage
+        x, y = cell_places(found.normal.half_space)
+        xi, eta, spin = found.creepage
         moved = [
             displacement(each.traction[0] + 1j * each.traction[1], each.normal.pressure, 0.0)
             for each in (found, before)

@@ -117,7 +117,8 @@ class Oil:
         remedy = "Give both viscosities instead."
         thick = index >= viscosity_index(float(grade), THINNEST)
         require(thick, "viscosity index", received, allowed, remedy)
-        low, high = THINNEST, float(grade)
+        low = THINNEST
+        high = float(grade)
         for _ in range(60):
             middle = 0.5 * (low + high)
             low, high = (middle, high) if viscosity_index(float(grade), middle) < index else (low, middle)

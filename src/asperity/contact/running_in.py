@@ -118,7 +118,8 @@ def _pass(
     positions = range(0, len(heights) - job.body.shape[0] + 1, job.stride)
     size = max(PIECE, -(-job.body.shape[0] // job.stride))
     pieces = [positions[first : first + size] for first in range(0, len(positions), size)]
-    roll, message = partial(_piece, heights, state, job), f"running in, pass {len(state['largest']) + 1}"
+    roll = partial(_piece, heights, state, job)
+    message = f"running in, pass {len(state['largest']) + 1}"
     rolled = (found for parity in (0, 1) for found in in_order(roll, pieces[parity::2], workers))
     return total(counted(rolled, len(positions), message, progress, lambda found: found.solved))
 

@@ -297,7 +297,8 @@ class FrictionalHalfSpace:
         nx, ny = (min(smooth_length(m), n) for m, n in zip((nx, ny), self.half_space.shape, strict=True))
         key = (nx, ny, ahead, steady, single)
         if key not in self._prepared:
-            middle, (traction, _, own) = self.half_space.shape, self._influence(ahead, steady)
+            middle = self.half_space.shape
+            traction, _, own = self._influence(ahead, steady)
             inside = (slice(m - n, m + n - 1) for m, n in zip(middle, (nx, ny), strict=True))
             kernels = traction[:, *inside] / (own if single else 1.0)
             dtype = np.float32 if single else np.float64
@@ -332,7 +333,9 @@ class FrictionalHalfSpace:
 
     def _doubt(self, found: SlidingContact, manner: _Manner) -> None:
         """Warn of what is outside the range of the theory."""
-        (xi, eta, spin), words, creepage = found.creepage, [], math.hypot(*found.creepage[:2])
+        xi, eta, spin = found.creepage
+        words = []
+        creepage = math.hypot(*found.creepage[:2])
         slips = found.slip_area
         area = found.normal.area
         slipping = percent(slips / area) if area else "nothing"
@@ -448,8 +451,11 @@ class FrictionalHalfSpace:
         self, normal: Contact, bound: Array, past: Complex, motion: tuple[float, ...], manner: _Manner
     ) -> SlidingContact:
         """Solve at a bound, on the box of the contact."""
-        (x, y), (xi, eta, spin), (ahead, steady) = cell_places(self.half_space), motion, manner.kernel
-        (_, spread, own), rigid = self._influence(ahead, steady), manner.step * complex(xi, eta) - past
+        x, y = cell_places(self.half_space)
+        xi, eta, spin = motion
+        ahead, steady = manner.kernel
+        _, spread, own = self._influence(ahead, steady)
+        rigid = manner.step * complex(xi, eta) - past
         if spin:
             rigid += manner.step * spin * (1j * (x + SPIN_AHEAD * manner.ahead) - y)
         if manner.curvature:

@@ -47,7 +47,8 @@ def rubbing(rolling: FrictionalHalfSpace, contact: SlidingContact, before: Slidi
     Traction is the mean of that before and after at the same material, also where that leaves the contact: so
     the work of a steady state is that of its forces, however coarse the grid.
     """
-    dx, (x, y) = rolling.half_space.spacing[0], cell_places(rolling.half_space)
+    dx = rolling.half_space.spacing[0]
+    x, y = cell_places(rolling.half_space)
     now, past = (each.traction[0] + 1j * each.traction[1] for each in (contact, before))
     moved = rolling.displacement(now, contact.normal.pressure)
     moved = moved - rolling.displacement(past, before.normal.pressure, dx)
@@ -503,7 +504,9 @@ def _pass(
     space = job.bodies.half_space
     rows = job.body.shape[0]
     counts = []
-    tell, distance, (along, across, spin) = progress or (lambda *_: None), space.spacing[0], job.motion
+    tell = progress or (lambda *_: None)
+    distance = space.spacing[0]
+    along, across, spin = job.motion
     depth = np.zeros(heights.shape)
     volume = np.zeros(len(REGIMES))
     work = 0.0

@@ -145,7 +145,8 @@ def analytic_signal(values: Array, rate: float, low: float, high: float) -> Arra
     lines = np.zeros(values.size, dtype=np.complex128)
     below_half = (values.size + 1) // 2
     frequency = np.arange(below_half) * (rate / values.size)
-    first, last = np.searchsorted(frequency, low), np.searchsorted(frequency, high, side="right")
+    first = np.searchsorted(frequency, low)
+    last = np.searchsorted(frequency, high, side="right")
     del frequency
     np.multiply(rfft(values)[first:last], 2.0, out=lines[first:last])
     return np.asarray(ifft(lines, overwrite_x=True))

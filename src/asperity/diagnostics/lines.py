@@ -139,7 +139,9 @@ def explained_lines(
         `LineFamily` by name, the clearest first. Harmonics fall on each other: three times the outer
         frequency of a 6205 is twice the inner one within 0.7 %.
     """
-    (frequency, amplitude), found, left = spectrum, dict[str, LineFamily](), dict(expected)
+    frequency, amplitude = spectrum
+    found = dict[str, LineFamily]()
+    left = dict(expected)
     amplitude = np.array(amplitude)
     while left:
         tried = {

@@ -40,7 +40,8 @@ def tones_alone(signal: Array, rate: float, *, clipped: bool = False) -> tuple[f
     noise = np.sqrt(max(np.median(part) for part in np.array_split(power, BLOCKS)) / np.log(2.0))
     if not clipped and noise > ROUNDING * max(_step(signal), LEAST_STEP * float(values.std())):
         return ()
-    found, all_of_them = [], power.sum()
+    found = []
+    all_of_them = power.sum()
     while power.sum() > SHARE * all_of_them:
         at = int(power.argmax())
         found.append(at * rate / values.size)

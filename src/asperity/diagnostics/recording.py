@@ -35,8 +35,10 @@ OFFSET = 1.0
 """Mean over the rms about it from which on it is told."""
 BLOCK = 2**16
 """Samples that are looked at together: a record is not held beside itself."""
-SAMPLE, NEAR_MIDDLE = 2**14, (0.48, 0.52)
-"""Samples that tell near what the median of a record is, and shares of them between which it is sought."""
+SAMPLE = 2**14
+"""Samples that tell near what the median of a record is."""
+NEAR_MIDDLE = (0.48, 0.52)
+"""Shares of these samples between which the median is sought."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -90,7 +90,8 @@ class Direct:
         from asperity.contact.halfspace import HalfSpace
         from asperity.reduction.texture import grid_index
 
-        (dx, _), half = self.spacing, self.body.shape[0] // 2
+        dx, _ = self.spacing
+        half = self.body.shape[0] // 2
         rows = len(self.heights) - 2 * half
         grid_index("texture under the contact window", rows, self.start + half * dx, dx, positions)
         index = (as_row(positions) - self.start) / dx

@@ -170,7 +170,8 @@ def _shared(response: Response, limits: Limits, silence: float) -> Array:
     They are the best at that weight of silence over price: by its energy e the price of a band falls as
     price/e, and the response grows as its weight. The relief is that of the limits of the rms height.
     """
-    (low, high, least, most), price = _energies(limits), _at_least(limits.price, FREE)
+    low, high, least, most = _energies(limits)
+    price = _at_least(limits.price, FREE)
     heard = silence * _at_least(response.weights, UNHEARD)
 
     def energies(below: Array) -> Array:

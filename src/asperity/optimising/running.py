@@ -137,7 +137,8 @@ class Optimised:
     @property
     def sentence(self) -> str:
         """What came of it, for people."""
-        aim, (first, last) = self.aim, (self.before, self.after)
+        aim = self.aim
+        first, last = (self.before, self.after)
         rms = [engineering(rms_of(bands.levels[bands.changed]), "m") for bands in (first, last)]
         units = written_units(self.measure.units)
         told = [

@@ -54,7 +54,8 @@ def passed_points(
     displacement = np.zeros((len(places), len(forces), count))
 
     def by_forces_in(bay: int) -> tuple[slice, list[Array]]:
-        begin, end = ends[bay], ends[bay + 1]
+        begin = ends[bay]
+        end = ends[bay + 1]
         within = at[begin:end] - bay
         acting = forces[:, begin:end]
         sides = {point.side(bay) for point in passed} - {0}

@@ -25,8 +25,10 @@ FEWEST_POSITIONS = 16
 """Positions of a scan, at least, from which a filter is estimated."""
 HIGHEST = 0.8
 """Largest wavenumber of a filter to that which the positions of the scan can tell apart."""
-FITTED_WIDTH, FITTED_BINS = 1.0 / 6.0, 1.5
-"""Half the width of the average that is the fit: octaves, and bins of the spectra where those are wider."""
+FITTED_WIDTH = 1.0 / 6.0
+"""Half the width of the average that is the fit, octaves."""
+FITTED_BINS = 1.5
+"""Half its width in bins of the spectra, where those are wider."""
 CUT_OFF, CUT_OFF_SLOPE = 1e-2, 4
 """Line power times k^slope below this share of its largest value at longer waves excites no contact."""
 
@@ -237,8 +239,10 @@ def closed_form(approaches: Array, wavenumber: Array, semi_axes: Array, stiffnes
     )
 
 
-ACCURACY, DOWN_TO = 0.3, -30.0
-"""A chosen order meets the fitted filter within so many dB, down to a level in dB."""
+ACCURACY = 0.3
+"""Within which a chosen order meets the fitted filter, dB."""
+DOWN_TO = -30.0
+"""Level of the fitted filter down to which it does, dB."""
 GROWTH = 1.25
 """From one order tried to the next."""
 LARGEST_ORDER = 4096

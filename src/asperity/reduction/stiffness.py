@@ -216,7 +216,8 @@ def patches(maps: Sequence[Array], shape: tuple[int, int], count: int, weights: 
     """
     result = []
     for index, heights in enumerate(maps):
-        (rows, lines), spare = heights.shape, (heights.shape[0] - shape[0], heights.shape[1] - shape[1])
+        rows, lines = heights.shape
+        spare = (heights.shape[0] - shape[0], heights.shape[1] - shape[1])
         allowed = f"no more than the map's {rows} × {lines} cells at this spacing"
         remedy = "Choose a smaller contact.window or provide larger maps."
         received = f"{shape[0]} × {shape[1]} cells"

@@ -211,7 +211,8 @@ def pass_by_limit(vehicle: str, speed: float, axles_per_length: float) -> PassBy
     that by 50 lg v, below to 80 km/h by 30 lg v; those at 80 km/h or less count as of a vehicle that runs no
     faster, as they are.
     """
-    (slow, fast), ratio = LIMITS[vehicle], speed / _FAST
+    slow, fast = LIMITS[vehicle]
+    ratio = speed / _FAST
     axles = 0.0
     if vehicle == WAGON:
         axles = -10.0 * math.log10(axles_per_length / _AXLES_PER_LENGTH)

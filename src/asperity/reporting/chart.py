@@ -51,7 +51,8 @@ COLOURS = {
 }
 DASHES = ((), (6, 1.5), (6, 1.5, 1.5, 1.5), (3, 1.5), (1.5, 1.5), (9, 1.5, 1.5, 1.5, 1.5, 1.5))
 """Of lines of a sequence, for the same."""
-LAW_COLOURS, SEQUENCE = tuple(COLOURS)[3:-6], tuple(COLOURS)[-6:]
+LAW_COLOURS = tuple(COLOURS)[3:-6]
+SEQUENCE = tuple(COLOURS)[-6:]
 
 
 def colour_variables(dark: bool, colours: Mapping[str, str] = COLOURS) -> str:

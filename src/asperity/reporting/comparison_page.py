@@ -25,7 +25,8 @@ OF_RUN = (provenance.VERDICT, provenance.ASPERITY_VERSION, provenance.CREATED)
 
 def table_rows(of: ComparedRuns) -> tuple[list[str], list[list[object]]]:
     """Heading and rows of everything that is compared: a column for each run and each difference."""
-    names, blank = of.names, [""] * len(of.runs)
+    names = of.names
+    blank = [""] * len(of.runs)
     heading = ["what", "quantity", "law", "at", "unit", *names]
     heading += ["unit of the difference", *(f"{name} - {names[0]}" for name in names[1:])]
     rows: list[list[object]] = []
@@ -45,7 +46,8 @@ def table_rows(of: ComparedRuns) -> tuple[list[str], list[list[object]]]:
 
 def _rows_of(table: xarray.Dataset, name: str) -> Iterator[list[object]]:
     """A quantity at each place, in all runs, and its differences: those kept, or plain ones."""
-    held, kept = table[name], table.get(f"{name}_difference")
+    held = table[name]
+    kept = table.get(f"{name}_difference")
     what = {"approach": "contact", "wavenumber": "filter", "band": "level", JUDGED_BAND.name: "velocity"}
     own = [dim for dim in held.dims if dim != "run"]
     place = next((str(dim) for dim in own if dim != "law"), "")
@@ -167,13 +169,17 @@ def _level(of: ComparedRuns, name: str) -> Drawn:
     """
     level = of.table[name].values
     difference = of.table[f"{name}_difference"].values
-    band, runs, (main, *_) = of.table["band"].values, range(len(of.runs)), of.laws
+    band = of.table["band"].values
+    runs = range(len(of.runs))
+    main, *_ = of.laws
     above = tuple(_of_run(of, r, band, level[r, 0]) for r in runs)
     bands = panels.band_axis(band[np.isfinite(level).any(axis=(0, 1))])
     label = f"level of {main} / {data.written_units(of.table[name].attrs['units'])}"
     yield Panel(bands, panels.levels_axis(label, [level[:, 0]]), above, height=3.2)
     below: list[chart.Mark] = [panels.zero(colour=INK, width=0.8)]
-    (first, second, *others), told, shaded = of.names, f"of {main} to {of.names[0]}", ""
+    first, second, *others = of.names
+    told = f"of {main} to {of.names[0]}"
+    shaded = ""
     if others:
         below += [_of_run(of, r, band, difference[r, 0]) for r in runs[1:]]
     else:

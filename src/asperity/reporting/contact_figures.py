@@ -31,7 +31,8 @@ def _semi_axes(tree: DataTree) -> tuple[float, float] | None:
 
 def _outline(tree: DataTree, x: Numbers, y: Numbers) -> list[Line]:
     """Outline of Hertz's contact, black on white: it crosses all colours of a map."""
-    semi_axes, (size, _) = _semi_axes(tree), data.length_unit(np.ptp(x))
+    semi_axes = _semi_axes(tree)
+    size, _ = data.length_unit(np.ptp(x))
     if semi_axes is None:
         return []
     angle = np.linspace(0.0, 2 * np.pi, CORNERS + 1)
@@ -233,7 +234,8 @@ def contact_filter(tree: DataTree, lines: Lines) -> Drawn:
 
     Over wavenumbers above zero, shaded where the texture excites nothing.
     """
-    excited, states = np.ones(len(lines.at), dtype=bool), _drawn_states(tree, lines)
+    excited = np.ones(len(lines.at), dtype=bool)
+    states = _drawn_states(tree, lines)
     if data.present(tree, contact.FILTER_EXCITED):
         excited = data.values(tree, contact.FILTER_EXCITED) > 0
     theory = _by_state(lines, contact.FILTER_THEORY)

@@ -86,7 +86,8 @@ def _findings(tree: DataTree) -> Iterator[Light]:
 def _warnings(tree: DataTree, checks: Sequence[Light]) -> Iterator[Light]:
     """Warnings on the physics, but for those that a check says as well."""
     for warning in data.json_list(tree, provenance.WARNINGS):
-        message, grade = str(warning.get("message", "")), str(warning.get("grade", WARNING))
+        message = str(warning.get("message", ""))
+        grade = str(warning.get("grade", WARNING))
         if not any(
             check.value and message.startswith(f"{check.quantity}: {check.value}") for check in checks
         ):

@@ -126,7 +126,8 @@ def _is_endless(mark: chart.Mark) -> bool:
 
 def _draw_axis(axes: Axes, way: str, axis: chart.Axis, ends: Ends, length: float) -> None:
     """Ticks and name of an axis of a length in inches, and what stands opposite to it."""
-    side, (low, high) = axes.xaxis if way == "x" else axes.yaxis, sorted(ends)
+    side = axes.xaxis if way == "x" else axes.yaxis
+    low, high = sorted(ends)
     side.set_label_text(axis.label)
     if axis.ticks:
         at, names = zip(*axis.ticks, strict=True)

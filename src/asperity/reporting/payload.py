@@ -85,8 +85,10 @@ def _planes(numbers: np.ndarray) -> bytes:
 
 MOST = 300_000
 """Numbers of the lines of a chart; longer ones are shown by the extremes of stretches of them."""
-PIXELS, SHADES = (800, 320), 1022
-"""Of a field: along x and along y, and from the lowest number to the highest."""
+PIXELS = (800, 320)
+"""Of a field, along x and along y."""
+SHADES = 1022
+"""Of a field, from the lowest number to the highest."""
 COLOURED = ("colour", "fill", "edge")
 SCRIPTS = ("numbers", "ticks", "marks", "panel", "cursor", "legend", "figures")
 

@@ -45,7 +45,8 @@ def pass_by_pressure(tree: DataTree) -> DataArray | None:
     found = _sound_power(tree)
     if found is None:
         return None
-    (band, level), rolling = found, tree["rolling"].to_dataset()
+    band, level = found
+    rolling = tree["rolling"].to_dataset()
     speed = tree[SPEED.group].attrs.get(SPEED.name)
     if CONTACT_FORCE.name not in rolling or speed is None:
         return None

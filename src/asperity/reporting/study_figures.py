@@ -230,7 +230,8 @@ def _panel(mean: xarray.Dataset, scatter: xarray.Dataset | None, name: str, key:
             if np.isfinite(by).any():
                 marks.append(Boxes(line.x, line.x, line.y - by, line.y + by, edge=line.colour, law=line.law))
         marks.append(line)
-    (place, look), others = lines[0], _others(mean, key)
+    place, look = lines[0]
+    others = _others(mean, key)
     told = [str(at) for dim, at in place.items() if dim not in others and str(at) != look["label"]]
     title = ", ".join([what, *told])
     return Panel(_key_axis(mean[key]), Axis(unit), tuple(marks), title, height=2.55)

@@ -123,7 +123,8 @@ def system_of(
 
 def alternating(system: System) -> Array:
     """Least alternating compliance of the body at each contact (n,), m/N: of all its contacts at once."""
-    found, (d, f) = np.zeros(len(system.body)), (system.core_shapes.shape[1], system.shapes.shape[1])
+    found = np.zeros(len(system.body))
+    d, f = (system.core_shapes.shape[1], system.shapes.shape[1])
     first = len(system.stiffness) - f * len(system.core_step)  # of the modes of bodies
     modes = steps.alternating_of_modes(system.coefficients)[first:]
     for b, step in enumerate(system.core_step):

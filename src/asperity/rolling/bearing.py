@@ -296,7 +296,8 @@ class _Turning:
 
     def on_raceway(self, ball: int, ring: int) -> Values:
         """Position of a ball along a raceway, m, from 0 to its circumference."""
-        radius, azimuth = self.bearing.raceway_radii[ring], self.azimuth(ball, ring).places
+        radius = self.bearing.raceway_radii[ring]
+        azimuth = self.azimuth(ball, ring).places
         return lambda steps: radius * (azimuth(steps) % TURN)
 
     def spot(self, ring: int) -> Values:
@@ -361,7 +362,8 @@ class _Turning:
         They stand opposite each other, so that what they would do along the axis cancels.
         """
         ring = RINGS.index(self.bearing.turning)
-        rate, half = TURN * self.turns[ring], 0.5 * force / math.cos(self.contact_angle)
+        rate = TURN * self.turns[ring]
+        half = 0.5 * force / math.cos(self.contact_angle)
         spacing = None if isinstance(self.speed, SpeedCourse) else rate * self.time_step
 
         def at(angle: float) -> Trajectory:

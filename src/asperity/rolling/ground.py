@@ -244,7 +244,8 @@ def small_motion(over: Modal | RailBetween | Track | None) -> Small | None:
         return Small("rail", "its bow under a load", over.bow_length, "Beam theory needs small slopes", check)
     if over is None or not np.isfinite(over.extent).all():
         return None
-    (first, last), meaning = over.extent, "Modes are those of small motion"
+    first, last = over.extent
+    meaning = "Modes are those of small motion"
     return Small("structure", "its length", last - first, meaning, "load, modes and mass")
 
 

@@ -50,7 +50,8 @@ def exact_step(stiffness: Array, damping: Array, time_step: float) -> Array:
     matrix exponential of the system extended by its force, in time units of the step (Van Loan, IEEE Trans.
     Autom. Control 23 (1978) 395-404): one form for all kinds of systems, without division by a frequency.
     """
-    h, (k, d, _) = time_step, stiffness.shape
+    h = time_step
+    k, d, _ = stiffness.shape
     generator = np.zeros((k, 4 * d, 4 * d))
     place, rate, force, rise = (slice(i * d, (i + 1) * d) for i in range(4))
     generator[:, place, rate] = generator[:, rate, force] = generator[:, force, rise] = np.eye(d)

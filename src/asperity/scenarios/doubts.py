@@ -361,7 +361,8 @@ def doubt_bearing(case: BearingUnderLoad) -> None:
         if keys.roughness is not None and keys.longest > around:
             told = f"{rounded(1e3 * around)} mm are around, which hold less than that roughness"
             _warn(f"{name}.longest", keys.longest, "m", told, "mm")
-    what, resonance = f"the resonance of the most loaded {of.ELEMENT} between the rings", case.ball_resonance
+    what = f"the resonance of the most loaded {of.ELEMENT} between the rings"
+    resonance = case.ball_resonance
     warn_if_coarse(case.step, [(what, resonance, 0.99 * case.resolving(resonance) / resonance)])
 
 

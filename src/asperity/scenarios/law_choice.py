@@ -141,9 +141,10 @@ LONG, WIDE, TINY = 10.0, 1.0, 1e-4
 """Lengths of correlation beyond which nothing changes, in contacts, along and across; least ratio of all."""
 LOST = 0.1
 """Share of the time out of contact from which paths part and levels scatter."""
-CHEAP, SURE = ("areal", "table"), "table"
-"""Laws that are taken, the cheapest first; the sure one scans the whole path, and is to be had wherever the
-first is."""
+CHEAP = ("areal", "table")
+"""Laws that are taken, the cheapest first."""
+SURE = "table"
+"""The one that scans the whole path, and is to be had wherever the first is."""
 UNMAPPED = "direct"
 """Law that is taken where the map knows nothing, as over a defect: windows that hold one are dear to scan."""
 

@@ -187,7 +187,8 @@ def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], preparin
     tones = ", ".join(
         f"{names_in(found.bearing)[part]} {rounded(turning.tone(part), 4)} Hz" for part in PARTS
     )
-    load, angle = max(load for _, load in case.contacts), np.degrees(found.contact_angle)
+    load = max(load for _, load in case.contacts)
+    angle = np.degrees(found.contact_angle)
     touching, at_rest = (each.static.touching for each in (case, case.with_(centrifugal=False)))
     held = f"{rounded(touching.mean())} of {found.bearing.balls} on average, {touching.min():.0f} or more"
     alone = f", and {runs - len(case.laws)} by areal with parts alone" if textured else ""

@@ -89,7 +89,8 @@ def _problem_of_heights(prepared: PreparedCase) -> InputError | None:
     case = prepared.case
     shape = prepared.shape
     textures = prepared.textures
-    (nx, ny), maps = shape.body.shape, textures.maps
+    nx, ny = shape.body.shape
+    maps = textures.maps
     depth, wave = case.surface.corrugation, case.surface.corrugation_wavelength
     if depth is not None and wave is not None and 2.0 * math.pi * depth > STEEPEST * wave:
         received = f"{written(depth, 'm', 'um')} in waves of {written(wave, 'm', 'mm')}"

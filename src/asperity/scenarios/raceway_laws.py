@@ -8,7 +8,6 @@ from itertools import product
 from typing import Any, get_args
 
 import numpy as np
-from scipy import fft
 
 from asperity.arguments import Array, ArrayLike, NDArray, positive
 from asperity.contact import scan
@@ -31,27 +30,16 @@ from asperity.reduction.stiffness import (
 from asperity.reduction.texture import StateTexture, areal_texture, punch_weights
 from asperity.scenarios import reducing
 from asperity.scenarios.geometry import HIGHEST_FORCE, Geometry
+from asperity.scenarios.raceway_grids import CELLS, HALF_WINDOW
 from asperity.scenarios.scanned_positions import OF_TEXTURE, OF_WAVE
 from asperity.scenarios.scanned_states import states_around, states_expected
 from asperity.store import Store
 from asperity.surfaces.edges import Edges
-from asperity.surfaces.faults import Fault
 from asperity.surfaces.heightmap import HeightMap
-from asperity.surfaces.raceway import AroundTexture, Raceway, raceway
+from asperity.surfaces.raceway import Raceway
 from asperity.surfaces.strip import Rows
 from asperity.written_numbers import in_newtons
 
-CELLS = (8, 16)
-"""Cells along and across to a half axis of the contact under the load."""
-CELLS_OF_FAULT = 8
-"""Cells to the length and the width of a fault, or to twice the width of its burr, at least."""
-CELLS_OF_WAVE = 3
-"""Cells to the shortest wavelength of a roughness, at least."""
-HALF_WINDOW = 3.2
-"""Half the window over the half axes under the load: 1.6 times those under the largest force of a state."""
-FOLLOWED = 10.0
-"""Half axes along, under the load, of a wave that contacts follow as a plane, and its bow is not in the scan:
-half a per cent of the force at an amplitude of a tenth of the approach, which itself moves 15 %."""
 OTHER_LOADS = (0.25, 4.0)
 """Loads at which it is told how far laws are off over a fault, over that which they are made for."""
 FAULT_OFF = 0.1
@@ -62,60 +50,6 @@ SAMPLES = 8
 """Places of a rough raceway whose mean is its force curve."""
 FILTER_STRIPS, FILTER_LENGTH = 4, 60.0
 """Pieces of a rough raceway on which contact filters are found, and their length in half axes along."""
-
-
-def raceway_on(
-    contact: Hertz,
-    load: float,
-    radius: float,
-    texture: AroundTexture | None = None,
-    faults: Sequence[Fault] = (),
-    *,
-    seed: int = 0,
-) -> Raceway:
-    """Make a raceway, or the surface of a ball, on the grid that its contacts ask for.
-
-    Parameters
-    ----------
-    contact : Hertz
-        Smooth contact of ball and raceway, x along the path.
-    load : float
-        Largest static load of a ball, N: laws are made for up to eight times as much.
-    radius : float
-        Of the path around, m: of the raceway, or of the ball.
-    texture : AroundTexture, optional
-        What is on it all around; smooth by default.
-    faults : sequence of Fault
-        What is damaged.
-    seed : int
-        Of phases and roughness.
-
-    Returns
-    -------
-    Raceway
-        As wide as the contacts.
-
-    Raises
-    ------
-    InputError
-        For faults off the raceway, textures that do not close, and surfaces of too many points.
-    """
-    texture = texture or AroundTexture()
-    around = 2.0 * math.pi * positive("radius of the raceway (m)", radius)
-    axes = contact.semi_axes(contact.approach(positive("load of a ball (N)", load)))
-    wave = [texture.shortest / CELLS_OF_WAVE] if texture.is_rough else []
-    spacing = [
-        min([axis / cells, *wave, *(fault.details[i] / CELLS_OF_FAULT for fault in faults)])
-        for i, (axis, cells) in enumerate(zip(axes, CELLS, strict=True))
-    ]
-    # a ball sinks into a hollow until it lands on edges, which may be as far out
-    rx, ry = 8.0 * contact.radius_x, 8.0 * contact.radius_y
-    sinks = max((min(f.depth, f.size[0] ** 2 / rx, f.size[1] ** 2 / ry) for f in faults), default=0.0)
-    half = HALF_WINDOW * axes[1] + 0.5 * math.sqrt(ry * sinks)
-    stride = max(1, math.floor(axes[0] / CELLS[0] / spacing[0] + 1e-9))
-    rows = stride * fft.next_fast_len(math.ceil(around / spacing[0] / stride), real=True)
-    shape, steps = (rows, 2 * math.ceil(half / spacing[1]) + 1), (around / rows, spacing[1])
-    return raceway(texture, faults, shape, steps, seed=seed, followed=FOLLOWED * axes[0])
 
 
 @dataclass(frozen=True, eq=False)
@@ -193,17 +127,22 @@ class OnRaceway:
 
         Over a fault the ball may touch where it sinks to, or behind a bump.
         """
-        (dx, dy), contact, faults = self.surface.spacing, self.contact, self.surface.faults
+        dx, dy = self.surface.spacing
+        contact = self.contact
+        faults = self.surface.faults
         reach = max(self._reach(each) for each in (self.surface, *self.balls))
-        half, lines = math.ceil((HALF_WINDOW * self.axes[0] + reach) / dx), faults.shape[1]
-        x, y = (np.arange(2 * half + 1) - half) * dx, (np.arange(lines) - lines // 2) * dy
+        half = math.ceil((HALF_WINDOW * self.axes[0] + reach) / dx)
+        lines = faults.shape[1]
+        x = (np.arange(2 * half + 1) - half) * dx
+        y = (np.arange(lines) - lines // 2) * dy
         body = np.add.outer(x**2 / (2.0 * contact.radius_x), y**2 / (2.0 * contact.radius_y))
         largest = HIGHEST_FORCE * self.load
         return Geometry(body, (dx, dy), contact.modulus, contact, self.load, largest)
 
     def _reach(self, surface: Raceway) -> float:
         """How far before and behind the middle a ball may touch over the faults of a surface, m."""
-        faults, radius = surface.faults, self.contact.radius_x
+        faults = surface.faults
+        radius = self.contact.radius_x
         sound = np.flatnonzero(~surface.damaged.any(axis=1))
         longest = surface.spacing[0] * np.diff(np.append(sound, sound[:1] + len(faults))).max(initial=1)
         sinks = min(-float(faults.min()), longest**2 / (8.0 * radius))
@@ -261,20 +200,24 @@ class OnRaceway:
 
         By so much less is the approach there than on the smooth raceway.
         """
-        rtol, start = rtol_for(self.accuracy), None
+        rtol = rtol_for(self.accuracy)
+        start = None
         smooth = self.space.at_load(self.shape.body, self.load, None, rtol).approach
-        met, felt = self._met(self.surface.damaged), np.zeros(len(self.positions))
+        met = self._met(self.surface.damaged)
+        felt = np.zeros(len(self.positions))
         for at in np.flatnonzero(met).tolist():
             gap, edges = self._over(at)
             found = self.space.at_load(gap, self.load, start, rtol, edges)
-            felt[at], start = smooth - found.approach, found.pressure
+            felt[at] = smooth - found.approach
+            start = found.pressure
         return np.interp(np.arange(self.rows), self.positions, felt, period=self.rows)
 
     def averaged(self, heights: Array, axes: ArrayLike) -> Array:
         """Heights (rows, lines), m, averaged under patches of half axes (k, 2), m, with `over_faults`."""
         patch = np.minimum(np.atleast_2d(axes), 0.5 * heights.shape[1] * self.surface.spacing[1])
         reach = math.ceil(patch[:, 0].max() / self.surface.spacing[0]) + 1
-        rows, states = Rows(self._around(heights, reach)), np.arange(len(patch), dtype=float)
+        rows = Rows(self._around(heights, reach))
+        states = np.arange(len(patch), dtype=float)
         under = areal_texture(rows, self.surface.spacing, states, patch).heights
         return self.over_faults - under[:, reach:-reach]
 
@@ -304,10 +247,12 @@ class OnRaceway:
     @cached_property
     def approaches(self) -> Array:
         """States, from the planes, m: up to eight times the load wherever the raceway is unlike."""
-        felt, sound = self.over_faults[self.positions], np.flatnonzero(~self._met(self.surface.damaged))
+        felt = self.over_faults[self.positions]
+        sound = np.flatnonzero(~self._met(self.surface.damaged))
         extreme = [each(values) for each in (np.argmin, np.argmax) for values in (self.touches, felt)]
         few = SAMPLES if self.surface.heights.any() else 1
-        window, even = len(self.shape.body), sound[:: max(1, math.ceil(len(sound) / few))]
+        window = len(self.shape.body)
+        even = sound[:: max(1, math.ceil(len(sound) / few))]
         chosen = [(self.positions[at], self.planes[at]) for at in np.union1d(extreme, even).astype(int)]
         places = [self.scanned[row : row + window] - plane for row, plane in chosen]
         return reducing.chosen_states(places, self.shape, self.space)
@@ -384,16 +329,19 @@ class OnRaceway:
 
     def _texture(self, heights: Array, states: Array | None = None) -> StateTexture:
         """Heights (k, rows) of states (k,), m, as laws take them: closed, positive away from contact."""
-        closed, dx = -self._around(np.atleast_2d(heights), OVERLAP, axis=1), self.surface.spacing[0]
+        closed = -self._around(np.atleast_2d(heights), OVERLAP, axis=1)
+        dx = self.surface.spacing[0]
         return StateTexture(closed, np.zeros(1) if states is None else states, -OVERLAP * dx, dx)
 
     @cached_property
     def ensemble(self) -> StiffnessEnsemble | None:
         """Loading curves over places of a rough raceway; None of one that is smooth under the contact."""
-        heights, shape = self.surface.heights, self.shape.body.shape
+        heights = self.surface.heights
+        shape = self.shape.body.shape
         if not heights.any():
             return None
-        weights, rtol = punch_weights(self.surface.spacing, self.axes), rtol_for(self.accuracy)
+        weights = punch_weights(self.surface.spacing, self.axes)
+        rtol = rtol_for(self.accuracy)
         samples = patches([heights], (shape[0], shape[1]), SAMPLES, weights)
         pressed = self.space, self.shape.body, self.approaches, 0.0
         return stiffness_ensemble(samples, *pressed, rtol=rtol, tolerance="accuracy")
@@ -422,8 +370,10 @@ class OnRaceway:
     @cached_property
     def filters(self) -> dict[Normalise, LineFilter]:
         """Contact filters in all states that carry load, from pieces of the raceway, by normalisation."""
-        rows, beyond = len(self.shape.body), round(FILTER_LENGTH * self.axes[0] / self.surface.spacing[0])
-        around, rough = np.arange(min(rows + beyond, self.rows)), self.surface.heights
+        rows = len(self.shape.body)
+        beyond = round(FILTER_LENGTH * self.axes[0] / self.surface.spacing[0])
+        around = np.arange(min(rows + beyond, self.rows))
+        rough = self.surface.heights
         firsts = np.arange(FILTER_STRIPS) * self.rows // FILTER_STRIPS
         strips = [HeightMap(rough[(first + around) % self.rows], self.surface.spacing) for first in firsts]
         found, counts = reducing.filters_of(
@@ -435,10 +385,13 @@ class OnRaceway:
 
     def warn_of_faults(self, laws: Sequence[str]) -> None:
         """Say how far laws that give a fault one height are off over it, under other loads than theirs."""
-        felt, told, worst = self.over_faults[self.positions], list[str](), 0.0
+        felt = self.over_faults[self.positions]
+        told = list[str]()
+        worst = 0.0
         at = int(np.argmax(np.abs(felt)))
         for share in OTHER_LOADS:
-            approach, followed = self.contact.approach(share * self.load) - felt[at], share * self.load
+            approach = self.contact.approach(share * self.load) - felt[at]
+            followed = share * self.load
             gap, edges = self._over(at)
             solved = self.space.solve(gap, approach, rtol=rtol_for(self.accuracy), edges=edges)
             worst = max(worst, abs(followed / solved.force - 1.0) if solved.force else 1.0)
@@ -468,7 +421,8 @@ class OnRaceway:
 
     def _materials(self, law: LawSpec, surface: Raceway, states: slice | None = None) -> Materials:
         """Materials of a law over a surface on the cells of the raceway: its heights; all else is its own."""
-        approach, half = self.contact.approach(self.load), len(self.shape.body) // 2 + 1
+        approach = self.contact.approach(self.load)
+        half = len(self.shape.body) // 2 + 1
         made_by: dict[str, Callable[[], Any]] = {
             "line": lambda: self._line(law),
             "curve": lambda: self.curve,
@@ -538,7 +492,7 @@ def raceway_laws(
     contact : Hertz
         Smooth contact of ball and raceway, x along the path.
     surface : Raceway
-        From `raceway_on` for this contact and load.
+        From `asperity.scenarios.raceway_grids.raceway_on` for this contact and load.
     load : float
         Largest static load of a ball, N. States go up to eight times as much where the raceway is sound;
         beyond the last state F^(2/3) of `table` goes on with its end slope, the curve of `areal` with its.

@@ -16,9 +16,10 @@ from asperity.contact.hertz import Hertz
 from asperity.contact.slices import EXPONENT, SlicedContact
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.texture import StateTexture
-from asperity.scenarios import raceway_laws, reducing
+from asperity.scenarios import raceway_grids, reducing
 from asperity.scenarios.geometry import HIGHEST_FORCE, Geometry
-from asperity.scenarios.raceway_laws import CELLS, CELLS_OF_FAULT, CELLS_OF_WAVE, FOLLOWED, OnRaceway
+from asperity.scenarios.raceway_grids import CELLS, CELLS_OF_FAULT, CELLS_OF_WAVE, FOLLOWED
+from asperity.scenarios.raceway_laws import OnRaceway
 from asperity.surfaces.faults import Fault
 from asperity.surfaces.raceway import AroundTexture, Raceway, raceway
 
@@ -45,11 +46,11 @@ def surface_on(
 ) -> Raceway:
     """Make a raceway, or the surface of a ball or roller, on the grid that its contacts ask for.
 
-    Parameters and what is refused as of `asperity.scenarios.raceway_laws.raceway_on`; that of rollers is as
+    Parameters and what is refused as of `asperity.scenarios.raceway_grids.raceway_on`; that of rollers is as
     wide as they are long, in whole numbers of lines for each slice.
     """
     if isinstance(contact, Hertz):
-        return raceway_laws.raceway_on(contact, load, radius, texture, faults, seed=seed)
+        return raceway_grids.raceway_on(contact, load, radius, texture, faults, seed=seed)
     texture = texture or AroundTexture()
     around = 2.0 * math.pi * positive("radius of the raceway (m)", radius)
     half_width, _ = contact.semi_axes(contact.approach(positive("load of a roller (N)", load)))
@@ -118,7 +119,7 @@ class OnRollerRaceway(OnRaceway):
     def shape(self) -> RollerGap:
         """The gap of the smooth bodies along the path and by slices."""
         step = self.surface.spacing[0]
-        half = math.ceil(raceway_laws.HALF_WINDOW * self.axes[0] / step)
+        half = math.ceil(raceway_grids.HALF_WINDOW * self.axes[0] / step)
         path = (np.arange(2 * half + 1) - half) * step
         gap = np.add.outer(path**2 / (2.0 * self.contact.radius), self.contact.drops)
         width = self.contact.length / self.contact.slices

@@ -281,7 +281,8 @@ def _samples(case: Case, seeds: list[int]) -> tuple[tuple[HeightMap, ...], tuple
         return maps, strips, missing, f"{measured}; {origin}"
     if surface.rms is not None:
         shape = (strip_rows(contact), window_cells(contact))
-        spacing, keys = (contact.spacing, contact.spacing), self_affine_keys(surface)
+        spacing = (contact.spacing, contact.spacing)
+        keys = self_affine_keys(surface)
         strips = tuple(synthesis.self_affine(shape, spacing, **keys, seed=seed) for seed in seeds)
         return strips, strips, 0.0, "samples synthesised: self-affine, Gaussian"
     return (), (), 0.0, ""
@@ -371,7 +372,8 @@ def _defects(case: Case, contact: int, textures: Textures) -> dict[str, Any]:
         heights += dip
         centre += measured_lines.roll_over(Profile(dip, spacing), rolling.radius).heights
     if rolling.flat is not None and contact + 1 in rolling.flat_contacts:
-        (depth, length), around = rolling.flat, round(rolling.circumference / spacing) * spacing
+        depth, length = rolling.flat
+        around = round(rolling.circumference / spacing) * spacing
         first = rolling.flat_position
         if first is None:
             first = 0.5 * min(around, case.rolled_in(case.rolled_time))
@@ -452,7 +454,8 @@ def path_of(
     that `continuation`; or the path is synthesised in their likeness, the same at every speed from the row
     `before` on, where the record starts.
     """
-    (rows, ny), first = shape, maps[0]
+    rows, ny = shape
+    first = maps[0]
     middle = max((first.shape[1] - ny) // 2, 0)
     heights = first.heights[:rows, middle : middle + ny]
     heights = heights - heights.mean()

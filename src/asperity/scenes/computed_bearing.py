@@ -75,7 +75,9 @@ class ComputedBearing(PreparedBearing, RecordedRuns):
 
 def compute_bearing(prepared: PreparedBearing, progress: Progress) -> ComputedBearing:
     """Run the bearing by each law, at the sampling rate of the case."""
-    case, of, ons = prepared.case, prepared.case.bearing.bearing, raceways_of(prepared, progress)
+    case = prepared.case
+    of = prepared.case.bearing.bearing
+    ons = raceways_of(prepared, progress)
     looked_up = {name for name in case.laws if Need.SCAN in spec_of(name).needs}
     others = [name for name in case.laws if name not in looked_up]
     laws_of = [  # balls run forwards on the ring that stands still

@@ -98,7 +98,8 @@ def creep_group(computed: compute.Computed) -> Values:
             missed = rows[0] - _facts(steady)  # by its long steps
             rows.append(np.mean([_facts(each) for each in states], axis=0) + missed)
             shown = states[-1] if shown is first else shown
-    force, (x, y) = computed.stacked("contact_force"), cell_places(rolling.half_space)
+    force = computed.stacked("contact_force")
+    x, y = cell_places(rolling.half_space)
     bodies = creep.CreepingBodies(rolling, shape.body, creepage, speed, max(float(force.max()), shape.load))
     followed, (stick, slip, *forces) = bodies.follow(force), np.transpose(rows)
     power = bodies.power(followed)
@@ -158,7 +159,8 @@ def _squeal(computed: compute.Computed, bodies: creep.CreepingBodies) -> Values:
     over_creepage, over_load = bodies.slopes(computed.shape.load)
     contact = CreepingContact(*side.stiffness, -over_creepage / bodies.speed, over_load)
     omega = contact.roots(receptances, poles_of(modes))
-    which, known = np.arange(len(omega)), np.isfinite(omega)
+    which = np.arange(len(omega))
+    known = np.isfinite(omega)
     forces = contact.force_ratio(receptances(omega[known]))
     which[known] = ringing_modes(modes, place, omega[known], forces)
     believed = known & (modes.nodal_diameters[which] >= FREE_OF_AXLE)

@@ -373,6 +373,7 @@ def _banded(name: str, beyond: Array, bands: list[str], words: tuple[str, str], 
     asked = f"{asked} (EN ISO 3095:2013)"
     if not outside:
         return _condition(name, f"so in all {len(bands)} bands", asked, bool(bands))
-    (side, unit), worst = words, int(np.argmax(beyond))
+    side, unit = words
+    worst = int(np.argmax(beyond))
     here = f"{side} it in {count_of(outside, 'band')}, by up to {beyond[worst]:.1f} {unit} at {bands[worst]}"
     return _condition(name, here, asked, False)

@@ -64,7 +64,8 @@ def held_values(computed: Computed) -> tuple[Array, Array, Array]:
     band = computed.band
     time = bands.averaging_time(len(run.time), case.time_step, segment=computed.segment)
     seen = bands.values_seen(run.contact_force[0], case.time_step, band)
-    record, (begin, end) = float(run.time[-1]), run.positions[0, [0, -1]]
+    record = float(run.time[-1])
+    begin, end = run.positions[0, [0, -1]]
     places = begin + (end - begin) * (np.arange(PLACES) + 0.5) / PLACES
     of = (computed.scene.first, computed.scene, computed.stiffness, places)
     product = bands.band_product(band, time)

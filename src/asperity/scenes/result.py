@@ -130,7 +130,9 @@ def _numerics(
     computed: Computed, choice: LawChoice | None, seen: Iterable[tuple[str, str]]
 ) -> Iterator[tuple[str, str]]:
     """Numbers of the computation: names and values, with those that observers have `seen`."""
-    case, (nx, ny), runs = computed.case, computed.shape.body.shape, computed.runs
+    case = computed.case
+    nx, ny = computed.shape.body.shape
+    runs = computed.runs
     yield "time step", f"{rounded(case.time_step * 1e6, 4)} µs"
     yield "time steps", f"{max(len(run.time) for run in runs.values()) - 1}"
     yield "contact window", f"{nx} × {ny} cells of {rounded(case.contact.spacing * 1e6, 4)} µm"

@@ -67,7 +67,8 @@ class Sideways:
     def wheel(self, frequency: Array | Complex) -> Complex:
         """Receptances of the wheel at the contact (2, 2, f), m/N; frequencies in Hz."""
         case = self.computed.case
-        mass, (place, _) = case.rolling.contact_mass, case.contact_places
+        mass = case.rolling.contact_mass
+        place, _ = case.contact_places
         return lateral_rail.wheel_receptances(self.computed.scene.modes, mass, frequency, place)
 
     # --- as the mean over each line of the spectra, with every resonance of the wheel resolved
@@ -99,7 +100,8 @@ class Sideways:
     @cached_property
     def spread(self) -> Array:
         """Mean square of the linear vertical force at each place over their mean (n, f)."""
-        first, (normal, _) = self.computed.scene.first, self.stiffness
+        first = self.computed.scene.first
+        normal, _ = self.stiffness
         square = np.abs(force_transfer(self.lines, first, self.track.track, normal, self.places)) ** 2
         return square / square.mean(axis=0)
 
@@ -134,7 +136,8 @@ class Sideways:
 
     def rail_power(self) -> Array:
         """Sound power of the rail sideways (laws, f), W/Hz."""
-        case, (_, place) = self.computed.case, self.computed.case.contact_places
+        case = self.computed.case
+        _, place = self.computed.case.contact_places
         forms = squared_lateral_mobility(self.track, self.lines, self.places, place)
         one = self.means(np.ones((1, len(self.fine[0]))))
         of_force = forms[:, 0, 0].real * one + forms[:, 1, 1].real * self.squares
@@ -159,7 +162,8 @@ class Sideways:
         spread = self.between(self.spread) / PLACES
         share = np.sum(spread * self.shares, axis=0).real
         square = np.sum(spread * np.abs(self.shares) ** 2, axis=0)
-        omega, (place, _) = 2.0 * np.pi * fine, case.contact_places
+        omega = 2.0 * np.pi * fine
+        place, _ = case.contact_places
         radial, axial = (each[:, None] for each in modes.at(place))
         answers = modal.modal_answers(fine, modes.natural_frequencies, modes.damping_ratios).T
         rigid = 1.0 / (case.rolling.contact_mass * omega) ** 2

@@ -180,7 +180,8 @@ class Server:
     async def start_run(self, request: Request) -> Response:
         """Keep a case that is right, and roll it."""
         found = await _typed_in(request)
-        form, name = _form(found), str(found.get("name", ""))
+        form = _form(found)
+        name = str(found.get("name", ""))
         told = await self.contacts.ask("check", **form, surfaces=str(self.surfaces))
         facts = {"kind": form["kind"], "name": name, "changed": told["changed"]}
         identifier = stored_runs.keep_run(self.runs, told["toml"], **facts)

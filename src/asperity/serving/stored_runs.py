@@ -29,8 +29,10 @@ LARGEST_UPLOAD = 256 * 2**20
 """Bytes of a file, at most."""
 LARGEST_TOTAL = 2 * 2**30
 """Bytes of all files that are kept, at most."""
-STALLED, SLOWEST = 30.0, 20 * 2**10
-"""Time, s, that may pass without a byte, and rate, in bytes/s, below which a file is not waited for."""
+STALLED = 30.0
+"""Time that may pass without a byte, s."""
+SLOWEST = 20 * 2**10
+"""Rate below which a file is not waited for, bytes/s."""
 _LONGEST = 100  # characters of the name of a file
 _DEVICE = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\.|$)", re.IGNORECASE)
 """Names that stand for a device on Windows, whatever their ending."""
@@ -198,7 +200,8 @@ async def receive(
 
 async def _write_pieces(file: Path, pieces: AsyncIterator[bytes], check: Callable[[int], None]) -> None:
     """Write the pieces of a file as they come, while their number of bytes passes a check."""
-    size, now = 0, asyncio.get_running_loop().time
+    size = 0
+    now = asyncio.get_running_loop().time
     begun = now()
     try:
         with open(file, "xb") as opened:

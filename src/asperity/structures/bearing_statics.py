@@ -386,7 +386,8 @@ def _solved(bearing: BallBearing, radial: float, axial: float, speed: float, ang
     ring, imbalance = least_energy(energy_of, start, max(scale, lift), "balance of the inner ring")
     stretch = stretched(ring)
     ball = balls.together(stretch)[3]
-    inner, outer = balls.links(stretch - ball, "inner"), balls.links(ball, "outer")
+    inner = balls.links(stretch - ball, "inner")
+    outer = balls.links(ball, "outer")
     found = azimuth, ring, inner[3], outer[3], inner[4], outer[4], energy_of(ring)[2]
     return LoadedBearing(bearing, radial, axial, speed, *found, imbalance)
 

@@ -43,7 +43,8 @@ class Body:
     """Of one that was fitted to receptances: root mean square of the differences of level, dB."""
 
     def __post_init__(self) -> None:
-        (c, d), s = self.contacts.shape, len(self.natural_frequencies)
+        c, d = self.contacts.shape
+        s = len(self.natural_frequencies)
         if not s:
             object.__setattr__(self, "shapes", np.zeros((c, 0)))
         shapes = {"mass": (d, d), "damping": (d, d), "stiffness": (d, d), "pressing": (d,), "places": (c,)}

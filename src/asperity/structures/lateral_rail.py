@@ -316,8 +316,10 @@ class LateralTrack(LateralParameters):
         Of the side of the head, where the force is, by all waves at once; frequencies (f,), Hz.
         """
         twist, top = self.contact_shapes(SIDE)
-        side, spacing = top - twist, self.track.sleeper_spacing
-        distances, force = spacing * np.array(EN_15461_BAYS), 0.5 * spacing
+        side = top - twist
+        spacing = self.track.sleeper_spacing
+        distances = spacing * np.array(EN_15461_BAYS)
+        force = 0.5 * spacing
         motion = self.waves(_angular(frequency)).receptances(force + distances, force)
         return distances, np.asarray(np.einsum("a,xabf,b->xf", side, motion, side))
 

@@ -57,7 +57,8 @@ class Mobility:
             return self._shapes(spans[number], "outgoing"), self._shapes(spans[number], "incoming")
 
         def squares(number: int, x0: float) -> Array:
-            (right, left), length = _sent(self.spans[number], x0), spans[number].spacing
+            right, left = _sent(self.spans[number], x0)
+            length = spans[number].spacing
             to_x0 = length * self._up_to(x0 / length)
             shares = length * 0.5 * self.weights - to_x0, to_x0
             total = _squared(right, ahead[number]) + _squared(left, behind[number])

@@ -21,12 +21,16 @@ from asperity.written_numbers import count_of, rounded
 Dataset = dict[str, Any]
 
 AXES = ("x", "y", "z")
-NORMAL, COMPLEX = 2, (3, 7)
-"""Analysis types of a dataset 55: normal modes, and complex ones of first and second order."""
+NORMAL = 2
+"""Analysis type of a dataset 55: normal modes."""
+COMPLEX = (3, 7)
+"""Its analysis types of complex modes, of first and second order."""
 DISPLACEMENT = (0, 1, 8, 95, 96)
 """Its data types that are displacements: unknown, general, displacement; of a 2414 unknown vectors."""
-AT_NODES, COMPLEX_NUMBERS = 1, (5, 6)
-"""Where data of a dataset 2414 are, and its types of numbers that are complex."""
+AT_NODES = 1
+"""Where data of a dataset 2414 are."""
+COMPLEX_NUMBERS = (5, 6)
+"""Its types of numbers that are complex."""
 FULL = (0, 2, 3)
 """Its data characteristics with x, y and z: unknown, three and six degrees of freedom."""
 OUT_OF_PHASE = 0.1

@@ -306,10 +306,8 @@ class _Begun:
         """Responses (high − low, taps) at nodes of a bay to a force at a start, before they have grown."""
         positions = self.way.positions
         grid = self.way.grid(bay)
-        here, (outgoing, incoming) = (
-            self.shapes[grid, self.own],
-            self.shapes[grid, (self.own + bay) % self.bays],
-        )
+        here = self.shapes[grid, self.own]
+        outgoing, incoming = self.shapes[grid, (self.own + bay) % self.bays]
         forwards, backwards = (self.amplitudes[bay] * here[side][start] for side in (1, 0))
         behind = min(positions if bay < 0 else start if bay == 0 else 0, high)  # by reciprocity
         spectra, part = (each[: high - low, : grid.omega.size] for each in self._room())

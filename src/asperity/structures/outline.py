@@ -76,7 +76,8 @@ def checked_outline(points: ArrayLike, what: str = "outline of the section") -> 
 
 
 def _doubled_area(outline: Array) -> float:
-    (r, z), (r2, z2) = outline.T, np.roll(outline, -1, axis=0).T
+    r, z = outline.T
+    r2, z2 = np.roll(outline, -1, axis=0).T
     return float(np.sum(r * z2 - r2 * z))
 
 
@@ -136,7 +137,8 @@ def _turns_to_and_fro(outline: Array) -> tuple[int, Array]:
 
 def volume_of(outline: Array) -> float:
     """Volume of the solid of revolution in an outline, m³: 2π ∫ r dA (Pappus)."""
-    (r, z), (r2, z2) = outline.T, np.roll(outline, -1, axis=0).T
+    r, z = outline.T
+    r2, z2 = np.roll(outline, -1, axis=0).T
     return float(abs(np.sum((r + r2) * (r * z2 - r2 * z))) * np.pi / 3.0)
 
 
@@ -257,7 +259,8 @@ def _lattice(around: Array, step: float) -> Array:
 
 def _inside(points: Array, around: Array) -> NDArray[np.bool_]:
     """Whether points (n, 2) lie inside: an odd number of edges on the way out."""
-    (r, z), (r2, z2) = around.T, np.roll(around, -1, axis=0).T
+    r, z = around.T
+    r2, z2 = np.roll(around, -1, axis=0).T
     at = points[:, 1:]
     spanned = (z > at) != (z2 > at)
     beyond = r + (at - z) * (r2 - r) / np.where(z2 == z, 1.0, z2 - z) > points[:, :1]

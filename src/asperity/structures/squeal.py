@@ -118,7 +118,8 @@ def ringing_modes(modes: WheelModes, place: float, omega: Complex, forces: Compl
     In free motions of angular frequencies (n,), rad/s, with so much normal per lateral force (n,), at a place
     across the tread, m.
     """
-    (radial, axial), poles = modes.at(place), poles_of(modes)
+    radial, axial = modes.at(place)
+    poles = poles_of(modes)
     with np.errstate(divide="ignore", invalid="ignore"):  # at a pole its mode rings alone
         pushed = (np.multiply.outer(forces, radial) + axial) / (
             (omega[:, None] - poles) * (omega[:, None] + poles.conj())

@@ -124,7 +124,8 @@ class StiffnessTable:
     def at(self, omega: ArrayLike) -> Complex:
         """Stiffness relative to the nominal one at angular frequencies, rad/s, zero or more."""
         frequency = np.maximum(np.real(omega) / (2.0 * np.pi), self.frequencies[0])
-        place, known = np.log(frequency), np.log(self.frequencies)
+        place = np.log(frequency)
+        known = np.log(self.frequencies)
         real, imaginary = (np.interp(place, known, part) for part in (self.real, self.imaginary))
         return np.asarray((real + 1j * imaginary) / self.nominal, dtype=complex)
 
@@ -156,7 +157,8 @@ def stiffness_at_preload(rows: Array, preload: float) -> StiffnessTable:
     place = np.interp(preload, preloads, np.arange(len(preloads)))
     beside = preloads[int(place) : int(place) + 2]
     tables = [_table(rows if rows.shape[1] < 4 else rows[rows[:, 3] == each]) for each in beside]
-    below, above = tables[0], tables[-1]
+    below = tables[0]
+    above = tables[-1]
     at = np.union1d(below.frequencies, above.frequencies)
     low, high = (each.at(2.0 * np.pi * at) * each.nominal for each in (below, above))
     mixed = low + (place - int(place)) * (high - low)

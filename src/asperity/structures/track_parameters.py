@@ -97,8 +97,10 @@ class Relaxations:
 
 LAYERS = ("pad", "under_sleeper_pad", "ballast", "subgrade")
 """Springs between the rail and rigid ground, from the rail down."""
-_STIFFNESS, _DAMPING = Quantity("N/m", above=0), Quantity("N s/m", at_least=0)
-_LOSS, _METRE = Number(at_least=0, at_most=5), Quantity("m", above=0)
+_STIFFNESS = Quantity("N/m", above=0)
+_DAMPING = Quantity("N s/m", at_least=0)
+_LOSS = Number(at_least=0, at_most=5)
+_METRE = Quantity("m", above=0)
 _MASS, _BENDING = Quantity("kg", above=0), Quantity("N m^2", above=0)
 _RAILS = "rails lie between"
 _PADS = "pads lie between"

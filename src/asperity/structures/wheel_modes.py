@@ -354,7 +354,8 @@ def wheel_modes(
 
 def with_running_circle(outline: Array) -> tuple[Array, int]:
     """Outline with a point on the running circle, at the axial place 0 and the largest radius; its number."""
-    (r, z), (r2, z2) = outline.T, np.roll(outline, -1, axis=0).T
+    r, z = outline.T
+    r2, z2 = np.roll(outline, -1, axis=0).T
     over = np.flatnonzero((np.minimum(z, z2) <= 0.0) & (np.maximum(z, z2) >= 0.0) & (z != z2))
     if not len(over):
         received = f"axial places of {z.min() * 1e3:.4g} mm to {z.max() * 1e3:.4g} mm"

@@ -144,8 +144,10 @@ def _about(case: BearingUnderLoad) -> dict[str, Any]:
     there = [(FAULTY[on], fault) for on, fault in faults if on and fault]
     parts = list(dict.fromkeys(part for part, _ in there))
     fault = max((fault for _, fault in there), key=lambda each: each.length or 0.0, default=None)
-    bearing, turning = case.bearing.bearing, case.kinematics
-    speed, mean = float(case.speed), covered(case.speed, case.duration) / case.duration
+    bearing = case.bearing.bearing
+    turning = case.kinematics
+    speed = float(case.speed)
+    mean = covered(case.speed, case.duration) / case.duration
     diameter = 1e3 * bearing.ball_diameter
     pitch = 1e3 * bearing.pitch_diameter
     designation = case.bearing.name or (

@@ -282,7 +282,8 @@ def _draws(
     """Read the keys that are drawn, and list what is wrong with them."""
     if not isinstance(given, Mapping):
         return (), [InputError("draw", shown(given), "keys, each with what it is drawn from")]
-    found, errors = dict[str, Draw](), list[InputError]()
+    found = dict[str, Draw]()
+    errors = list[InputError]()
     for dotted, source in flat(given):
         if len(found) + len(errors) >= MOST_KEYS:
             errors.append(InputError("draw", "more keys", f"at most {MOST_KEYS} keys"))

@@ -60,7 +60,9 @@ class Span:
         match = _SPAN.fullmatch(text)
         if match is None:
             return None
-        low, high, ratios = float(match[1]), float(match[2]), match[4] is not None
+        low = float(match[1])
+        high = float(match[2])
+        ratios = match[4] is not None
         require(np.isfinite(high - low) and low != high, what, shown(text), "two different ends")
         require(not ratios or low * high > 0.0, what, shown(text), "ends above zero for equal ratios")
         return cls(low, high, (match[3] or "").strip(), ratios)

@@ -150,7 +150,8 @@ def noise_of(given: Any) -> Noise | None:
     """Noise by its words: ``"20 dB"``, ``"0.5 m/s^2"``, or a span, ``"0..30 dB"``."""
     if given is None:
         return None
-    what, received = "noise of the signals", shown(given)
+    what = "noise of the signals"
+    received = shown(given)
     allowed = "a level as '20 dB', or an rms above 0 as '0.5 m/s^2', or a span of one as '0..30 dB'"
     try:
         span = Span.read(what, given)

@@ -238,7 +238,8 @@ def _labels(member: Member, case: BearingUnderLoad) -> dict[str, Any]:
             value = getattr(getattr(case, section) if section else case, key)
             number = np.nan if value is None else mean_speed(case) if name == "speed" else value
             found[_titled(name)] = number if type(number) in (int, float) else written_out(value)
-    turning, share = case.kinematics, mean_speed(case) / float(case.speed)
+    turning = case.kinematics
+    share = mean_speed(case) / float(case.speed)
     found |= {f"{part}_tone [Hz]": share * turning.tone(part) for part in PARTS}
     found |= {"cage_tone [Hz]": share * turning.cage, "sampling_rate [Hz]": case.sampling_rate}
     return found | {"unit": UNIT, "law": case.laws[0]}

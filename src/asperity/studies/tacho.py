@@ -43,7 +43,8 @@ class Turned:
         known = np.flatnonzero(np.isfinite(self.turns))
         turns = self.turns[known]
         whole = float(turns[-1] - turns[0])
-        received, least = f"{rounded(whole)} turns", FEWEST_TURNS
+        received = f"{rounded(whole)} turns"
+        least = FEWEST_TURNS
         require(whole >= least, "tacho", received, f"at least {least:g} turns", "Record longer.")
         times = np.interp(np.arange(turns[0], turns[-1]), turns, known / self.rate)
         each = 1.0 / np.diff(times)

@@ -233,7 +233,8 @@ def _blocks_across(first: int, count: int, z: bytes) -> tuple[list[_Block], int]
 
 @lru_cache(maxsize=8)  # those of each range, as tiles of all follow each other along the path
 def _made_blocks(first: int, count: int, z: bytes) -> tuple[list[_Block], int]:
-    tiling, (_, weight) = Tiling.around_zero(TILE_ACROSS, BLEND_ACROSS), _across_waves()
+    tiling = Tiling.around_zero(TILE_ACROSS, BLEND_ACROSS)
+    _, weight = _across_waves()
     number = np.log(np.arange(first, first + count) / first) / math.log(SAME_COHERENCE)
     blocks = list[_Block]()
     number = np.floor(number + 1e-9)

@@ -42,7 +42,8 @@ def fill(surface: S, lines: bool | None = None) -> S:
     does, see `HeightMap.holds_lines`. Neighbours need not be in register: such lines are filled along
     themselves, by straight lines, and what is missing at their ends stays missing.
     """
-    missing, along = np.isnan(surface.heights), int(np.argmax(surface.heights.shape))
+    missing = np.isnan(surface.heights)
+    along = int(np.argmax(surface.heights.shape))
     by_lines = surface.heights.ndim == 2 and (surface.holds_lines if lines is None else lines)
     if by_lines:
         begun = np.maximum.accumulate(~missing, axis=along)

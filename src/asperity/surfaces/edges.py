@@ -61,7 +61,8 @@ class Edges:
 
     def sides(self, cells: Any = ...) -> Array:
         """What the two sides of some cells are along the normal (2, ...), m: their width, added up."""
-        (along, across), normal = self.spacing, self.normal[cells]
+        along, across = self.spacing
+        normal = self.normal[cells]
         return np.stack([normal * along, np.sqrt(np.maximum(1.0 - normal**2, 0.0)) * across])
 
     @cached_property

@@ -234,7 +234,9 @@ def lay(
 
 def _check_laid(fault: Fault, shape: tuple[int, int], spacing: tuple[float, float]) -> None:
     """Refuse a fault that no contact on the surface meets, or that is longer than it."""
-    (rows, lines), (dx, dy), (length, width) = shape, spacing, fault.size
+    rows, lines = shape
+    dx, dy = spacing
+    length, width = fault.size
     name = f"of the fault, a {fault.shape}"
     around = rows * dx
     received = f"{fault.offset * 1e3:.4g} mm"
@@ -267,7 +269,8 @@ def _lay_edge(
 ) -> NDArray[np.bool_]:
     """Write the edge of a fault where it is the next one; return which cells are sound at least in part."""
     distance, normal = fault.outline(*places)
-    own, (dx, dy) = Edges(distance, normal, np.zeros(distance.shape), edges.spacing), edges.spacing
+    own = Edges(distance, normal, np.zeros(distance.shape), edges.spacing)
+    dx, dy = edges.spacing
     nearer = distance < edges.distance[under]
     edges.distance[under] = np.where(nearer, distance, edges.distance[under])
     edges.normal[under] = np.where(nearer, normal, edges.normal[under])

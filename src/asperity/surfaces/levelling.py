@@ -78,7 +78,8 @@ def band_limit(surface: S, longest: float | None = None, shortest: float | None 
 
 def _gaussian(heights: Array, spacings: Array, cut_off: float) -> Array:
     valid = np.isfinite(heights)
-    weighted, weight = np.where(valid, heights, 0.0), valid.astype(np.float64)
+    weighted = np.where(valid, heights, 0.0)
+    weight = valid.astype(np.float64)
     for axis, spacing in enumerate(spacings):
         reach = int(min(np.ceil(cut_off / spacing), heights.shape[axis]))
         x = np.arange(-reach, reach + 1) * spacing

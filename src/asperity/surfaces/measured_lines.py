@@ -205,7 +205,8 @@ def _upper_envelope(heights: Array, arc: Array) -> Array:
     moves on with the place. Places are halved between those that are known, and of each no points count but
     those between the points of its neighbours.
     """
-    count, reach = len(heights), len(arc) - 1
+    count = len(heights)
+    reach = len(arc) - 1
     envelope = np.empty(count)
     highest = np.zeros(count, dtype=np.int64)
     distances = (1 << n for n in reversed(range((count - 1).bit_length())))

@@ -161,7 +161,8 @@ def lag_products(heights: Array, reach: int, mean: float = 0.0) -> Array:
 
     Of shape (2 reach + 1, 2 (columns//2) + 1), zero lag in the middle.
     """
-    (rows, columns), workers = heights.shape, thread_count()
+    rows, columns = heights.shape
+    workers = thread_count()
     side = columns // 2
     length = fft.next_fast_len(rows + reach, real=True)  # what wraps is beyond the lags
     width = fft.next_fast_len(columns + side)

@@ -346,7 +346,8 @@ def survey_strip(strip: Strip, segment: int, first: int = 0, stop: int | None = 
         high = max(high, float(heights.max()))
     del heights
     points = (stop - first) * strip.shape[1]
-    mean, reach = total / points, min(end - start for start, end in bounds) // 2
+    mean = total / points
+    reach = min(end - start for start, end in bounds) // 2
 
     def sums(start: int, end: int) -> tuple[Array, ...]:
         before = max(first, start - MARGIN)
@@ -439,7 +440,8 @@ def homogeneity(surface: HeightMap, *, surrogates: int = 39, seed: int = 0) -> H
     coarse = _coarse(whole)
     tile_rms = np.sqrt(_tile_mean_squares(whole))
     del whole
-    measured, (nx, ny) = _tile_mean_squares(levelling.level(coarse)), coarse.shape
+    measured = _tile_mean_squares(levelling.level(coarse))
+    nx, ny = coarse.shape
     variation = float(measured.std() / measured.mean())
     long = synthesis.from_map(coarse, (nx * surrogates, ny), seed).heights
     pieces = (HeightMap(long[k * nx : (k + 1) * nx], coarse.spacing) for k in range(surrogates))

@@ -209,7 +209,8 @@ def line_levels(surface: SelfAffine, wavelength: Array) -> Array:
         power = np.bincount(waves_of(each.tile).along, each.power)  # of all waves across
         here = step * np.arange(len(power))
         for band, length in enumerate(wavelength):
-            low, high = 1.0 / (length * HALF_BAND), HALF_BAND / length
+            low = 1.0 / (length * HALF_BAND)
+            high = HALF_BAND / length
             width = np.minimum(here + 0.5 * step, high) - np.maximum(here - 0.5 * step, low)
             found[band] += float(np.sum(power * np.clip(width, 0.0, None))) / step
     return level_of(found * (surface.rms / MICROMETRE) ** 2 / surface.mean_square)
@@ -257,7 +258,8 @@ class AffineRange:
     @cached_property
     def power(self) -> Array:
         """Mean squares of its waves, where the spectrum is one on the longest of the surface."""
-        waves, (along, across) = waves_of(self.tile), self.tile.size
+        waves = waves_of(self.tile)
+        along, across = self.tile.size
         scale = self.surface.longest * start_of(self.number)
         power = np.maximum(waves.stretched * scale**2, 1.0) ** (-1.0 - self.surface.hurst)
         # of wave 0 along, the opposite ones across are there
@@ -265,7 +267,9 @@ class AffineRange:
 
     def waves(self, tile: int, across: Array) -> Waves:
         """Complex amplitudes (k, ny), m, of a tile at places across (ny,), m."""
-        members, tiling, (count, beside) = waves_of(self.tile), self.across, self.tile.most
+        members = waves_of(self.tile)
+        tiling = self.across
+        count, beside = self.tile.most
         size = self.surface.rms * np.sqrt(self.power / self.surface.mean_square)
         turns = 2.0 * np.pi / tiling.length * np.arange(-beside, beside + 1)
         found = np.zeros((count + 1, len(across)), np.complex128)
@@ -341,7 +345,9 @@ def to_and_fro(count: int) -> Array:
 
 def _heights(strip: LongStrip) -> Array:
     """Heights of all of a strip that is no longer than a map, m, of which nothing is kept."""
-    shape, (dx, dy), ranges = strip.shape, strip.spacing, strip.drawn.ranges
+    shape = strip.shape
+    dx, dy = strip.spacing
+    ranges = strip.drawn.ranges
     require(len(shape) == 2 and min(shape) >= 2, "shape", shape, "(nx, ny), at least 2 points each")
     across = places_across(shape[1], dy)
     along = np.asarray(dx * np.arange(shape[0]))
@@ -482,7 +488,8 @@ class LikeMaps:
     @cached_property
     def _amplitudes(self) -> Array:
         """Rms of the waves (k, 2j + 1) that close on a tile, across as in `to_and_fro`."""
-        correlation, (rows, lines) = self.like.correlation, self.points
+        correlation = self.like.correlation
+        rows, lines = self.points
         # lags that wrap onto each other add up: the same spectrum at fewer wavenumbers, never below zero
         places = [np.fft.fftfreq(n, 1.0 / n).astype(np.intp) for n in correlation.shape]
         embedded = np.zeros((rows, lines))

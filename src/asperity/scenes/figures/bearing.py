@@ -100,7 +100,8 @@ def load_zone(tree: DataTree, lines: Lines) -> chart.Drawn:
         if part == "ball":  # an angle of zero touches the outer ring; balls turn against the inner ring
             place = azimuth[np.minimum(balls, len(azimuth)) - 1]
             against = -1.0 if data.case_words(tree, "bearing.turning") == "outer" else 1.0
-            (x, y), middle = _at(0.5 * ball, place + against * where), _at(0.5 * pitch, place)
+            x, y = _at(0.5 * ball, place + against * where)
+            middle = _at(0.5 * pitch, place)
         named = f"{'faults' if len(faults) > 1 else 'fault'} of the {_named(tree, part)}", COLOURS[part]
         marks.append(chart.Line(x + middle[0], y + middle[1], *named, width=0.0, marker="D"))
     if data.present(tree, bearing.SENSOR):

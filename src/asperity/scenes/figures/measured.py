@@ -215,7 +215,8 @@ def _values_over(entry: Entry) -> figure.Columns:
     def columns(tree: DataTree) -> Iterator[figure.Series]:
         at = _frequencies(tree)
         names = _words(tree, beside.QUANTITY)
-        over, found = data.values(tree, beside.AT), data.values(tree, entry)
+        over = data.values(tree, beside.AT)
+        found = data.values(tree, entry)
         for name in dict.fromkeys(names[_over_frequency(tree)].tolist()):
             own = names == name
             values = np.full(len(at), np.nan)

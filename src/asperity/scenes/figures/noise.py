@@ -124,7 +124,8 @@ def _standard_there(tree: DataTree) -> Iterator[Series]:
 )
 def radiated_power_bands(tree: DataTree, lines: Lines) -> Drawn:
     """A-weighted sound power of the main law per one-third octave, by what radiates, beside CNOSSOS-EU."""
-    main, (weighting,) = data.main_law(tree, OWN), (series.values for series in lines.of(BAND))
+    main = data.main_law(tree, OWN)
+    (weighting,) = (series.values for series in lines.of(BAND))
     own = [
         Line(lines.at, series.values + weighting, series.label, *LOOKS.get(series.label, ()))
         for series in lines.of(OWN, ALONE, law=main)

@@ -77,7 +77,8 @@ def run_up_map(tree: DataTree, lines: Lines) -> chart.Drawn:
     half = 0.5 * float(speed[1] - speed[0])
     wide = 0.5 * float(lines.at[1] - lines.at[0])
     ends = np.array([speed[0] - half, speed[-1] + half])
-    left, right = 1e-3 * (float(lines.at[0]) - wide), 1e-3 * (float(lines.at[-1]) + wide)
+    left = 1e-3 * (float(lines.at[0]) - wide)
+    right = 1e-3 * (float(lines.at[-1]) + wide)
     shown = chart.Field((left, right), (ends[0], ends[1]), levels.T, LEVEL, top - SPAN, top)
     orders = [
         chart.Line(

@@ -163,7 +163,9 @@ def _patch(of: Lengths) -> list[Panel]:
     wide, high, along, across = (side / size for side in (*sides, *semi_axes))
     marks: list[Mark] = []
     if cell := of.get("cell"):
-        name, (left, bottom), side = data.engineering(cell, "m", 2), (-wide / 2, -high / 2), cell / size
+        name = data.engineering(cell, "m", 2)
+        left, bottom = (-wide / 2, -high / 2)
+        side = cell / size
         marks.append(_block(left, bottom, wide, high, fill=""))
         marks.append(_block(left, bottom, side, side, fill=INK, colour=""))
         marks.append(Note(f" a cell, {name}", left + side, bottom + 2 * side))

@@ -254,7 +254,8 @@ def creep_answers(tree: DataTree) -> headline.Answers | None:
 )
 def squeal(tree: DataTree, lines: Lines) -> Drawn:
     """Growth rate of each motion over its frequency, named by its nodal diameters where it grows."""
-    growth, (squeals, of_axle) = data.values(tree, GROWTH), _growing(tree)
+    growth = data.values(tree, GROWTH)
+    squeals, of_axle = _growing(tree)
     growing = squeals + of_axle
     reach = 1.2 * max(float(growth[growing].max(initial=0.0)), 5.0)
     looks = (
@@ -286,7 +287,8 @@ CREEP = stick_and_slip, friction_force, squeal
 def friction_table(tree: DataTree) -> ReportTable:
     """Stick, forces and heat of each contact under the working load, then by each law as means over time."""
     laws = data.held_laws(tree, schema.MEAN_FRICTION_POWER)
-    area, full = (schema.STICK_AREA, schema.SLIP_AREA), data.values(tree, schema.FULL_SLIP_SHARE)
+    area = (schema.STICK_AREA, schema.SLIP_AREA)
+    full = data.values(tree, schema.FULL_SLIP_SHARE)
     power = schema.SPIN_MOMENT, schema.SAMPLE_HEAT, schema.MEAN_FRICTION_POWER
     stick, slip, moment, heat, mean_heat = (data.values(tree, entry) for entry in (*area, *power))
     in_time = [data.of_law(tree, FRICTION, law) for law in laws]
