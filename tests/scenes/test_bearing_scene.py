@@ -265,7 +265,7 @@ def test_direct_rolls_balls_as_their_average_where_waves_are_long(monkeypatch):
         return made(*given, forwards=forwards, **keys)
 
     monkeypatch.setattr("asperity.scenes.computed_bearing.laws_on", seen)
-    monkeypatch.setattr(raceway_laws, "CELLS", (3, 4))
+    monkeypatch.setattr("asperity.scenarios.raceway_grids.CELLS", (3, 4))
     tree = asperity.run(case, brief=True)
     assert directions == [False, True]  # balls run forwards on the ring that stands still
     force = tree["rolling/outer_force"].values[..., 20:-20]  # without the ends of the filter
@@ -515,11 +515,11 @@ KILLED_HALF_WAY = """
 import os, signal, sys
 import asperity
 from asperity.rolling import bearing, stepper
-from asperity.scenarios import raceway_grids, raceway_laws
+from asperity.scenarios import raceway_grids
 from asperity.scenarios.prepared_bearing import prepare_bearing
 from asperity.scenes.computed_bearing import compute_bearing
 
-raceway_grids.CELLS = raceway_laws.CELLS = (3, 4)
+raceway_grids.CELLS = (3, 4)
 bearing.INSTANTS, stepper.SAVE_EVERY = 1, 0.0
 
 def progress(done, total, message):
@@ -539,7 +539,7 @@ def test_direct_in_a_bearing_that_was_killed_goes_on_to_the_last_bit(monkeypatch
          "laws": ["direct"], "duration": "1 ms", "settling": "0 s", "time_step": "15 us",
          "centrifugal": False, "balls": {"waves": [2], "amplitudes": ["0.2 um"]}}
     )  # fmt: skip
-    monkeypatch.setattr(raceway_laws, "CELLS", (3, 4))
+    monkeypatch.setattr("asperity.scenarios.raceway_grids.CELLS", (3, 4))
     monkeypatch.setattr("asperity.rolling.bearing.INSTANTS", 1)
     prepared = prepare_bearing(case)
     steps = []

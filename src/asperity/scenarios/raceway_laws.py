@@ -28,9 +28,9 @@ from asperity.reduction.stiffness import (
     stiffness_ensemble,
 )
 from asperity.reduction.texture import StateTexture, areal_texture, punch_weights
-from asperity.scenarios import reducing
+from asperity.scenarios import raceway_grids, reducing
 from asperity.scenarios.geometry import HIGHEST_FORCE, Geometry
-from asperity.scenarios.raceway_grids import CELLS, HALF_WINDOW
+from asperity.scenarios.raceway_grids import HALF_WINDOW
 from asperity.scenarios.scanned_positions import OF_TEXTURE, OF_WAVE
 from asperity.scenarios.scanned_states import states_around, states_expected
 from asperity.store import Store
@@ -103,7 +103,8 @@ class OnRaceway:
     @cached_property
     def stride(self) -> int:
         """Rows between positions: the most up to an eighth of a half axis that divide a turn."""
-        most = max(1, math.floor(self.axes[0] / CELLS[0] / self.surface.spacing[0] * (1.0 + 1e-3)))
+        cell = self.axes[0] / raceway_grids.CELLS[0]
+        most = max(1, math.floor(cell / self.surface.spacing[0] * (1.0 + 1e-3)))
         return next(each for each in range(most, 0, -1) if self.rows % each == 0)
 
     @cached_property
