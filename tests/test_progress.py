@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from asperity import progress as module
-from asperity.progress import duration, progress_bar
+from asperity.progress import duration, progress_bar, which_of
 from asperity.terminal import Manner, speaking
 
 
@@ -152,3 +152,16 @@ def test_on_a_terminal_there_is_a_bar_for_each_piece_of_work():
 def test_durations():
     told = {0.0: "0 s", 59.0: "59 s", 89.9: "90 s", 240.0: "4 min", 9000.0: "2.5 h"}
     assert {seconds: duration(seconds) for seconds in told} == told
+
+
+def test_many_runs_of_a_kind_have_one_bar_that_says_which_it_is():
+    with progress_bar(stream := Terminal()) as progress:
+        for number in (1, 2):
+            for message in ("scan", "roll"):
+                progress(number, 4, f"{which_of('run', number, 9)}{message}")
+    last = stream.getvalue().split("\n")[-3:]
+    assert [re.search(r"run \d of at most 9: \w+", line)[0] for line in last[:2]] == [
+        "run 2 of at most 9: scan",
+        "run 2 of at most 9: roll",
+    ]
+    assert "run 1" not in "".join(last)

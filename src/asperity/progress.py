@@ -1,5 +1,6 @@
 """Progress of long work on standard error: what is done, how far it is and how long it will take."""
 
+import re
 import sys
 import threading
 import time
@@ -27,6 +28,14 @@ COMPILING = "compiling functions, once: later runs load them …"
 Progress = Callable[[int, int, str], object]
 """What long work calls, as ``progress(done, total, message)``: so many steps of the work are finished."""
 R = TypeVar("R")
+
+
+_NUMBERED = re.compile(r"^\w+ \d+ of at most \d+: ")
+
+
+def which_of(what: str, number: int, most: int) -> str:
+    """Begin what one of several pieces of work of a kind says: ``"run 7 of at most 60: "``."""
+    return f"{what} {number} of at most {most}: "
 
 
 def counted(
@@ -186,13 +195,15 @@ def _bars(stream: TextIO) -> Iterator[Progress]:
     with progress.Progress(*columns, console=Console(file=stream)) as bars:
 
         def update(done: int, total: int, message: str) -> None:
-            if message not in tasks:
-                tasks[message] = bars.add_task(printable(message), left="")
-                pieces[message] = _Piece(message, done, total)
-            piece = pieces[message]
+            name = _NUMBERED.sub("", message)  # of many runs alike one bar
+            if name not in tasks:
+                tasks[name] = bars.add_task("", left="")
+                pieces[name] = _Piece(name, done, total)
+            piece = pieces[name]
             piece.report(done, total, 0.0)
             left = f"about {duration(piece.left)} left" if piece.left > 0.0 else ""
-            bars.update(tasks[message], completed=done, total=total, left=left)
+            said = printable(message)
+            bars.update(tasks[name], description=said, completed=done, total=total, left=left)
 
         with COMPILATION.announced(lambda text: bars.console.print(text, markup=False, highlight=False)):
             yield update

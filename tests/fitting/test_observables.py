@@ -1,6 +1,7 @@
 """What a run, or a bearing, gives of what is measured: read where it stands, and keys fitted to it."""
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -41,6 +42,7 @@ def ran(monkeypatch):
         def run(case, progress, *, brief):
             assert brief
             calls.append(case)
+            progress(1, 2, "rolling")
             laid = values(case)
             names = {entry.group: {} for entry in laid}
             for entry, held in laid.items():
@@ -90,9 +92,17 @@ def test_levels_are_those_of_the_run(beam):
 def test_roughness_is_fitted_to_forces_with_few_runs(beam):
     case, calls = beam
     data = Measured("contact force level", BAND, HEIGHTS + 20.0 * np.log10(0.8))
-    found = asperity.fit(case, data)
+    told = []
+    found = asperity.fit(case, data, progress=lambda *step: told.append(step[2]))
     assert found.values == {"surface.rms": pytest.approx(0.08e-6, rel=1e-4)}
     assert len(calls) < 12
+    said = [re.fullmatch(r"run (\d+) of at most (\d+): rolling", each) for each in told if "rolling" in each]
+    assert [int(each[1]) for each in said] == list(range(1, len(calls) + 1))
+    most = [int(each[2]) for each in said]
+    # as it is; 15 steps and 5 more; slopes twice; held as often as contradicted; 4 for either end
+    assert most[0] == 1 + 20 + 2 + 2 * 5 + 8
+    assert most == sorted(most, reverse=True)
+    assert len(calls) <= most[-1] < most[0]
     assert found.case.surface.rms == found.values["surface.rms"]
 
 

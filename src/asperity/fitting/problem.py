@@ -13,10 +13,9 @@ from asperity.case.form import content, digest
 from asperity.errors import ComputationError, InputError, PhysicsWarning
 from asperity.fitting.free import Free, spectrum_of
 from asperity.fitting.search import FAR, central_slopes, forward_slopes, grouped_slopes
-from asperity.fitting.tried import TriedCase
+from asperity.fitting.tried import FitRuns, TriedCase
 from asperity.observables import observable
 from asperity.observables.observable import Measured, Observable, Values
-from asperity.progress import Progress
 from asperity.store import content_key
 
 APART = 4
@@ -43,8 +42,8 @@ class Problem:
         Standard deviation of what is predicted, dB, by the chance of the one record that is run.
     of_case : str
         Digest of the case and its files.
-    progress : callable
-        Called while the case is run.
+    runs : FitRuns
+        Runs of the case.
     held : dict
         Of runs the slopes of all levels (n,), dB, by the name of what is free: many runs tell them.
     """
@@ -56,7 +55,7 @@ class Problem:
     beyond: float = 0.0
     chance: Array | None = None
     of_case: str = ""
-    progress: Progress = lambda *_: None
+    runs: FitRuns = field(default_factory=FitRuns)
     held: dict[str, Array] = field(default_factory=dict)
 
     @cached_property
@@ -135,7 +134,7 @@ class Problem:
             here = repr(sorted(content(each.conditions).items()))
             if here not in trials:
                 tried = {**changes, **each.conditions}
-                trials[here] = TriedCase(self.case, tried, self.fine, self.progress)
+                trials[here] = TriedCase(self.case, tried, self.fine, self.runs)
             yield of, each, trials[here]
 
     def predicted(self, place: Array) -> list[Values]:
@@ -173,6 +172,12 @@ class Problem:
         """Whether the case is run for it."""
         return any(of.by_run for of in self.observables)
 
+    @cached_property
+    def runs_at_once(self) -> int:
+        """Runs that residuals at one place take: one for each of the conditions of what was measured."""
+        run = [each for each, of in zip(self.measured, self.observables, strict=True) if of.by_run]
+        return len({repr(sorted(content(each.conditions).items())) for each in run})
+
     def slopes(self, place: Array) -> Array:
         """Slopes of the residuals (n, p) at a place."""
         if self.by_run:
@@ -188,6 +193,11 @@ class Problem:
             found = grouped_slopes(self.residuals, place, self.high, self._groups)
             self.held.update(zip(names, found.T * self.uncertainty, strict=True))
         return np.stack([self.held[name] for name in names], axis=1) / self.uncertainty[:, None]
+
+    @property
+    def places_of_slopes(self) -> int:
+        """Places beside another at which runs are needed for slopes there."""
+        return len(self._groups)
 
     @cached_property
     def _groups(self) -> list[tuple[NDArray[np.int_], NDArray[np.bool_]]]:

@@ -24,11 +24,12 @@ from asperity.fitting.free import (
     read_free,
     read_range,
 )
-from asperity.fitting.interval_ends import Bowl, End
+from asperity.fitting.interval_ends import MOST, Bowl, End
 from asperity.fitting.problem import Problem
 from asperity.fitting.search import (
     FINE,
     ROUGH,
+    SCREENED,
     TOLERANCE,
     Optimum,
     descend,
@@ -36,6 +37,7 @@ from asperity.fitting.search import (
     starts_within,
     updated_slopes,
 )
+from asperity.fitting.tried import FitRuns
 from asperity.observables import observable, reading
 from asperity.observables.observable import Measured, Values
 from asperity.progress import Progress, shown_progress
@@ -218,14 +220,16 @@ def fitted(
 ) -> Fitted:
     """Fit a case to measurements by what may change, as `fit` does."""
     case = with_choices_fixed(case, case.laws[:1])
-    known, before = _known(case, measured, progress)
-    chance = Problem(case, known, (), progress=progress).chance_of_runs()
-    of_case = case_key("fit", FORMAT, case)
-    problem = Problem(case, known, chosen, chance=chance, of_case=of_case, progress=progress)
+    runs = FitRuns(progress)
+    asked = Problem(case, tuple(measured), chosen, of_case=case_key("fit", FORMAT, case), runs=runs)
+    usual = 1 if asked.by_run else STARTS
+    count = whole("starts", starts or usual, "1 to 100", at_least=1, at_most=100)
+    runs.most = _most_runs(asked, count)
+    known, before = _known(replace(asked, free=()))
+    problem = replace(asked, measured=known)
+    problem = replace(problem, chance=replace(problem, free=()).chance_of_runs())
     received = f"{count_of(len(chosen), 'free key')} and {count_of(problem.count, 'value')}"
     require(len(chosen) < problem.count, "fit", received, "more values than free keys", "Free fewer keys.")
-    usual = 1 if problem.by_run else STARTS
-    count = whole("starts", starts or usual, "1 to 100", at_least=1, at_most=100)
     left_open = list[Undetermined]()
     rough = replace(problem, fine=False)
     places = starts_within(problem.low, problem.high, problem.start, count, rough.residuals)
@@ -245,7 +249,23 @@ def fitted(
             received = f"data that leave every free key open ({'; '.join(each.words for each in left_open)})"
             raise InputError("fit", received, "data that tell one of them")
         problem, minima = fewer, held
+    runs.most = runs.done + _runs_of_ends(problem)
     return _told(case, problem, before, minima, left_open)
+
+
+def _most_runs(problem: Problem, starts: int) -> int:
+    """Runs of a fit from so many starts at most, the one of the case as it is among them."""
+    again = RUNS_AGAIN * (1 + (ROUNDS if problem.stated else 0))
+    screened = SCREENED * (starts - 1)
+    searched = RUNS * (starts if starts > 1 else 0) + RUNS + again
+    held = 2 * len(problem.free) * again  # each key found to be contradicted, then held nevertheless
+    places = 1 + screened + searched + 2 * problem.places_of_slopes + held
+    return problem.runs_at_once * places + _runs_of_ends(problem)
+
+
+def _runs_of_ends(problem: Problem) -> int:
+    """Runs at most by which the ends of all intervals are found."""
+    return problem.runs_at_once * 2 * MOST * sum(each.band is None for each in problem.free)
 
 
 @dataclass(frozen=True)
@@ -280,18 +300,15 @@ def _least_determined(problem: Problem, best: Optimum, contradicted: Collection[
     return _Least(number, Undetermined(problem.free[number], others, levels), allowed)
 
 
-def _known(
-    case: AnyCase, measured: Sequence[Measured], progress: Progress
-) -> tuple[tuple[Measured, ...], list[Values]]:
+def _known(problem: Problem) -> tuple[tuple[Measured, ...], list[Values]]:
     """Measurements where the case predicts anything at all, and what it predicts there as it is.
 
     A warning tells what is left out; an `InputError` says that nothing is left of a measurement.
     """
-    nothing = np.zeros(0)
-    predicted = Problem(case, tuple(measured), (), progress=progress).predicted(nothing)
+    predicted = problem.predicted(problem.start)
     known = list[Measured]()
     before = list[Values]()
-    for each, values in zip(measured, predicted, strict=True):
+    for each, values in zip(problem.measured, predicted, strict=True):
         inside = np.isfinite(values)
         out = ", ".join(rounded(at, 4) for at in each.at[~inside])
         where = f"{each.what} in {each.source}, {observable(each.what).axis}"
@@ -398,13 +415,13 @@ def _told(
     bowl = Bowl(problem.residuals, place, left, slopes, problem.low, problem.high, inside, allowed)
     estimates = []
     for number, (each, at, end) in enumerate(zip(problem.free, place.tolist(), ends.tolist(), strict=True)):
-        problem.progress(number, len(place), "ends of intervals")
+        problem.runs.progress(number, len(place), "ends of intervals")
         found = _interval(problem, bowl, number, float(half[number])) if number in inside else None
         interval = (each.end(found[0].place), each.end(found[1].place)) if found else None
         stops = (found[0].stop, found[1].stop) if found else ("", "")
         limit = {-1: "least", 0: "", 1: "largest"}[end]
         estimates.append(Estimate(each, each.outward(at), interval, limit, stops))
-    problem.progress(len(place), len(place), "ends of intervals")
+    problem.runs.progress(len(place), len(place), "ends of intervals")
     return Fitted(
         case.with_(**problem.changes(place)),
         case,
