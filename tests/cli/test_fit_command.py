@@ -55,6 +55,26 @@ def test_it_writes_the_case_a_table_and_a_page(rates):
     assert "Correlations" in page
 
 
+def test_repeats_that_differ_in_a_column_are_told(rates):
+    lines = [line.split(", ") for line in Path("rates.csv").read_text().splitlines()[1:]]
+    wide = ["section," + ",".join(f"{at} Hz" for at, _ in lines)]
+    wide += [f"{name}," + ",".join(rate for _, rate in lines) for name in ("B1", "B2")]
+    Path("wide.csv").write_text("\n".join(wide))
+    asked = [each.replace("rates.csv", "wide.csv") for each in FIT]
+    told = json.loads(call(*asked, "--as", "vertical decay rate", "--json").stdout)
+    (repeats,) = told["repeats"]
+    expected = {"quantity": "vertical decay rate", "source": "wide.csv", "measurements": 2}
+    assert repeats == expected | {"differ": {"section": ["B1", "B2"]}}
+    sentence = "taken as repeats of one, though they differ in section (B1, B2): choose some of them"
+    assert sentence in told["summary"]
+    assert sentence in words_of(Path("fitted.html").read_text())
+    one = json.loads(
+        call(*asked, "--as", "vertical decay rate", "--where", "section=B1", "--overwrite", "--json").stdout
+    )
+    assert one["repeats"] == []
+    assert "repeats" not in one["summary"]
+
+
 def test_what_is_doubtful_of_the_case_is_said_before_it_is_fitted(rates):
     Path("track.toml").write_text(f"{CASE}[noise]\nreceiver_height = '1.2 mm'\n")
     doubt = "noise.receiver_height = 0.0012 m: receivers stand at 0.1 m to 30 m. Is the unit right?"

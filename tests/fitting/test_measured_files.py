@@ -1,5 +1,6 @@
 """Tables of what was measured: with a line for each frequency, or a measurement in each line."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +10,7 @@ from asperity.errors import InputError
 from asperity.fitting.running import measured_for
 from asperity.observables import reading
 from asperity.observables.observable import Measured
-from asperity.observables.reading import combined, read_measured, read_where
+from asperity.observables.reading import combined, read_measured, read_where, told_repeats
 from refusals import refusals
 
 WIDE = """\
@@ -43,6 +44,44 @@ def test_a_line_is_a_measurement_and_lines_alike_are_one(track, file):
     expected = of_one / np.sqrt(3.0) / np.sqrt([2.0, 2.0, 1.0, 2.0])
     np.testing.assert_allclose(first.uncertainty, expected)
     assert second.uncertainty is None
+
+
+def test_in_which_columns_repeats_differ_is_said(track, file):
+    """The one speed and the direction keep them apart: of sections, rails and temperatures nothing does."""
+    several = WIDE.replace("B2,left,12,90", "B2,left,12,120") + "B2,right,,120,vertical,8,8,8,8\n"
+    vertical, lateral = measured_for(track, file(several), {}, None)
+    assert vertical.records == 4
+    assert vertical.differing == {
+        "section": ("B1", "B2"),
+        "rail": ("left", "right"),
+        "temperature (C)": ("11", "12", ""),
+    }
+    assert told_repeats(vertical) == (
+        "4 measurements of the vertical decay rate in decay_rates.csv are taken as repeats of one, though "
+        "they differ in section (B1, B2), rail (left, right) and temperature (11, 12, …): choose some of "
+        "them, as with --where section=B1."
+    )
+    assert told_repeats(lateral) == ""
+    (chosen,) = measured_for(track, file(several), {"section": "B1", "direction": "vertical"}, None)
+    assert chosen.differing == {"rail": ("left", "right")}
+
+
+def test_what_each_repeat_has_for_itself_is_named_where_nothing_else_differs():
+    said = {
+        "date": ("1 May", "2 May", "3 May"),
+        "the make": ("", "Soft pads", "Stiff pads"),
+        "level (dB)": ("1", "2", "3"),
+    }
+    of = Measured("mobility", [1.0], [1.0], source="a.csv", records=4, labels={"a": ("x",), **said})
+    assert of.differing == said
+    alone = replace(of, records=3, labels=said | {"rail": ("left", "right")})
+    assert alone.differing == {"rail": ("left", "right")}
+    assert replace(of, records=3, labels=said).differing == said
+    many = replace(of, labels={f"c{n}": ("one", "two") for n in range(6)})
+    assert "c2 (one, two), c3 (one, two) and 2 more columns: choose" in told_repeats(many)
+    damper = replace(of, labels={"the make": ("", "Soft pads")})
+    assert "in the make (nothing, Soft pads): choose" in told_repeats(damper)
+    assert told_repeats(damper).endswith("as with --where 'the make=Soft pads'.")
 
 
 def test_scatter_is_taken_over_as_few_neighbours_as_tell_it():

@@ -157,6 +157,16 @@ def _document(found: Fitted) -> dict[str, Any]:
             }
             for each in found.estimates
         ],
+        "repeats": [
+            {
+                "quantity": each.what,
+                "source": each.source,
+                "measurements": each.records,
+                "differ": each.differing,
+            }
+            for each in found.measured
+            if each.records > 1
+        ],
         "correlations": found.correlations,
         "rms": found.rms(),
         "rms_before": found.rms(before=True),

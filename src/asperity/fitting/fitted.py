@@ -10,6 +10,7 @@ from asperity.fitting.free import NEPER, Free
 from asperity.fitting.interval_ends import LIMIT
 from asperity.observables import observable
 from asperity.observables.observable import Measured, Values
+from asperity.observables.reading import told_repeats
 from asperity.written_numbers import count_of, in_a_row, rounded
 
 
@@ -197,6 +198,7 @@ class Fitted:
         left = self.rms()
         before = self.rms(before=True)
         told = [f"Left: {rounded(left, 2)} dB rms of {values}, before {rounded(before, 2)} dB."]
+        told += [sentence for each in self.measured if (sentence := told_repeats(each))]
         if limited := [each for each in self.estimates if each.limit]:
             names = in_a_row([each.name for each in limited])
             told.append(

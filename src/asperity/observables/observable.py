@@ -39,6 +39,8 @@ class Measured:
         Where it comes from.
     records : int
         Number of measurements of which it is the mean.
+    labels : mapping
+        What columns of a table say of it, by their titles: of a mean each word that they say of any of them.
 
     Raises
     ------
@@ -61,6 +63,7 @@ class Measured:
     places: tuple[float, float] | None = None
     source: str = "measured"
     records: int = 1
+    labels: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         at = as_row(self.at)
@@ -83,6 +86,15 @@ class Measured:
     def count(self) -> int:
         """Real numbers that it holds."""
         return len(self.at) * (2 if np.iscomplexobj(self.values) else 1)
+
+    @property
+    def differing(self) -> dict[str, tuple[str, ...]]:
+        """Columns in which measurements differ of which it is the mean, with what they say.
+
+        One that says something else of each, as a date, chooses none: it is named where no other differs.
+        """
+        differ = {title: words for title, words in self.labels.items() if len(words) > 1}
+        return {title: words for title, words in differ.items() if len(words) < self.records} or differ
 
 
 class Predictable(Protocol):

@@ -1,6 +1,7 @@
 """What was measured, from files: with a line for each place of an axis, or a measurement in each line."""
 
 import re
+import shlex
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from itertools import groupby
@@ -21,7 +22,7 @@ from asperity.parameters import FROM_PYTHON
 from asperity.spectra import a_weighting
 from asperity.text_files import lines_of_cells, number_in, read_text
 from asperity.units import quantity, unit_in, unit_in_brackets
-from asperity.written_numbers import count_of
+from asperity.written_numbers import count_of, in_a_row
 
 MOST_RECORDS = 1000
 """Measurements of one file."""
@@ -170,14 +171,17 @@ def _record(
     at = np.array(sorted(values))
     held = np.array([values[frequency] for frequency in at])
     centres = _centres(path, at)
-    told = {title: _cell(row, number) for number, title in labels.items() if _cell(row, number)}
+    every = {title: _cell(row, number) for number, title in labels.items()}
+    told = {title: cell for title, cell in every.items() if cell}
     direction = next((each for title, each in told.items() if _plain(title) == _DIRECTION), "")
     if of.name in DIRECTIONS.values() and direction:
         of = observable(DIRECTIONS[one_of(f"direction in {path.name}", direction.lower(), DIRECTIONS)])
     if of.decade and (held <= 0.0).any():
         raise InputError(path.name, f"a {of.name} of {held[held <= 0.0][0]:g}", "greater than 0")
     held = held - a_weighting(centres) if weighted and of.units.startswith("dB re 20") else held
-    return Measured(of.name, centres, held, conditions=conditions_of(case, told), source=path.name)
+    conditions = conditions_of(case, told)
+    said = {title: (cell,) for title, cell in every.items()}
+    return Measured(of.name, centres, held, conditions=conditions, source=path.name, labels=said)
 
 
 def _centres(path: Path, at: Array) -> Array:
@@ -242,7 +246,44 @@ def _mean(group: Sequence[Measured]) -> Measured:
         uncertainty=None if deviation is None else deviation / np.sqrt(times),
         source=", ".join(dict.fromkeys(each.source for each in group)),
         records=len(group),
+        labels=_labels_of(group),
     )
+
+
+def _labels_of(group: Sequence[Measured]) -> dict[str, tuple[str, ...]]:
+    """What columns say of any of these, each word once."""
+    found: dict[str, dict[str, None]] = {}
+    for each in group:
+        for title, words in each.labels.items():
+            found.setdefault(title, {}).update(dict.fromkeys(words))
+    return {title: tuple(words) for title, words in found.items()}
+
+
+MOST_COLUMNS = 4
+"""Columns that are named in a sentence."""
+
+
+def told_repeats(measured: Measured) -> str:
+    """In which columns measurements differ that are taken as repeats, and how to choose; else empty."""
+    if not (differ := measured.differing):
+        return ""
+    shown_columns = dict(list(differ.items())[:MOST_COLUMNS])
+    named = [_column(title, words) for title, words in shown_columns.items()]
+    if more := len(differ) - len(named):
+        named.append(count_of(more, "more column"))
+    title, words = next(iter(differ.items()))
+    chosen = f"{_plain(title)}={next(word for word in words if word)}"
+    return (
+        f"{measured.records} measurements of the {measured.what} in {measured.source} are taken as repeats "
+        f"of one, though they differ in {in_a_row(named)}: choose some of them, as with --where "
+        f"{shlex.quote(chosen)}."
+    )
+
+
+def _column(title: str, words: Sequence[str]) -> str:
+    """A column, and two of the words that it says."""
+    said = ", ".join(word or "nothing" for word in words[:2])
+    return f"{_plain(title)} ({said}{', …' if len(words) > 2 else ''})"
 
 
 def _side_by_side(group: Sequence[Measured], every: Array) -> NDArray[np.inexact]:
