@@ -13,6 +13,7 @@ from asperity import observables
 from asperity.case.cases import as_case, read_case
 from asperity.case.tables import read_levels
 from asperity.fitting import tried as fitted_to
+from asperity.fitting.free import free_key
 from asperity.fitting.running import measured_for
 from asperity.fitting.tried import TriedCase
 from asperity.observables.observable import Measured
@@ -225,6 +226,25 @@ def test_tones_tell_the_axial_load_by_the_contact_angle(ball_bearing):
     found = asperity.fit(ball_bearing, Measured("bearing tone", tones, tones), ["axial"], starts=1)
     assert found.values == {"axial": pytest.approx(900.0, rel=1e-3)}
     assert found.predicted[0] == pytest.approx(tones, rel=1e-6)
+
+
+def test_a_load_that_may_be_zero_is_sought_by_its_logarithm(ball_bearing, ran):
+    """Its limits, 0 to 100 MN, are no scale: steps of half a meganewton found 624 N for 400 N."""
+    free = free_key(ball_bearing, "axial")
+    assert (free.logarithmic, free.low, free.high) == (True, pytest.approx(0.02), 1e8)
+    assert free.range_source == "from 0.0001 of the case's value to the limit of the key"
+    lines = np.arange(1.0, 400.0)
+    ran(
+        lambda case: {
+            bearing.LAW: ["hertz"],
+            bearing.ENVELOPE_FREQUENCY: lines,
+            bearing.ENVELOPE: 1e-3 * case.axial ** (lines / 200.0)[None],
+        }
+    )
+    at = np.array([50.0, 100.0, 200.0, 300.0])
+    found = asperity.fit(ball_bearing, Measured("envelope line", at, 1e-3 * 400.0 ** (1.02 * at / 200.0)))
+    assert found.values["axial"] == pytest.approx(400.0, rel=0.01)
+    assert not found.estimates[0].limit
 
 
 def test_velocities_and_lines_are_those_of_the_run(ball_bearing, ran):

@@ -18,6 +18,8 @@ from asperity.written_numbers import rounded
 
 NEPER = 20.0 / math.log(10.0)
 """dB that an e-fold of an amplitude is."""
+LEAST_PART = 1e-4
+"""Of a value that a case has: from there on it is sought by its logarithm where it may be zero."""
 Range = tuple[float, float]
 
 
@@ -115,6 +117,8 @@ def free_key(case: AnyCase, dotted: str, within: Range | None = None) -> Free:
         low, high = (min(low, start), max(high, start)) if given and start > 0.0 else (low, high)
     elif within is None:
         low, high, why = *_own_limits(dotted, entry.key), "limits of the key"
+        if low == 0.0 and given and start > 0.0:
+            low, why = LEAST_PART * start, f"from {LEAST_PART:g} of the case's value to the limit of the key"
     else:
         low, high, why = *within, "given here"
         for end in within:
