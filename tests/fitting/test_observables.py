@@ -2,6 +2,7 @@
 
 import json
 import re
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ import asperity
 from asperity import observables
 from asperity.case.cases import as_case, read_case
 from asperity.case.tables import read_levels
+from asperity.errors import BandsWarning
 from asperity.fitting import tried as fitted_to
 from asperity.fitting.free import free_key
 from asperity.fitting.running import measured_for
@@ -245,6 +247,33 @@ def test_a_load_that_may_be_zero_is_sought_by_its_logarithm(ball_bearing, ran):
     found = asperity.fit(ball_bearing, Measured("envelope line", at, 1e-3 * 400.0 ** (1.02 * at / 200.0)))
     assert found.values["axial"] == pytest.approx(400.0, rel=0.01)
     assert not found.estimates[0].limit
+
+
+def test_the_band_of_the_envelope_that_a_run_chose_stays(ball_bearing, ran):
+    """From run to run another band was the most impulsive one: lines jumped by 16 dB."""
+    lines = np.arange(1.0, 400.0)
+
+    def laid(case):
+        low, high = case.envelope_band or ((2e3, 6e3) if case.axial < 300.0 else (6e3, 9e3))
+        return {
+            bearing.LAW: ["hertz"],
+            bearing.ENVELOPE_LOW: low,
+            bearing.ENVELOPE_HIGH: high,
+            bearing.ENVELOPE_FREQUENCY: lines,
+            bearing.ENVELOPE: (1.0 if low == 2e3 else 0.1) * case.axial ** (lines / 200.0)[None],
+        }
+
+    ran(laid)
+    at = np.array([50.0, 100.0, 200.0, 300.0])
+    data = Measured("envelope line", at, 400.0 ** (1.02 * at / 200.0))
+    said = "envelope_band = 2 kHz, 6 kHz, as the run of the case chose it, stays while others are tried: give"
+    with pytest.warns(BandsWarning, match=re.escape(said)):
+        found = asperity.fit(ball_bearing, data)
+    assert found.values["axial"] == pytest.approx(400.0, rel=0.01)
+    assert found.case.envelope_band == (2e3, 6e3)
+    given = ball_bearing.with_(envelope_band=(2e3, 6e3))
+    with warnings.catch_warnings(action="error"):
+        assert asperity.fit(given, data).values["axial"] == pytest.approx(400.0, rel=0.01)
 
 
 def test_velocities_and_lines_are_those_of_the_run(ball_bearing, ran):

@@ -152,6 +152,15 @@ class Problem:
             ]
         )
 
+    def chosen_by_runs(self) -> dict[str, Any]:
+        """Keys that the case does not give, and that runs of it as it is chose, with their values."""
+        return {
+            dotted: value
+            for of, _, trial in self._tried(self.start)
+            if of.chosen is not None
+            for dotted, value in of.chosen(trial).items()
+        }
+
     def left(self, place: Array) -> list[Array]:
         """Level of what was measured over what is predicted, of each measurement, dB."""
         both = zip(self.observables, self.measured, self.predicted(place), strict=True)

@@ -10,7 +10,7 @@ import numpy as np
 
 from asperity.arguments import Array, FilePath, NDArray, file_path, require, shown, whole
 from asperity.case import cases
-from asperity.case.any_case import AnyCase, entry_of
+from asperity.case.any_case import AnyCase, entry_of, in_words
 from asperity.case.form import case_key
 from asperity.errors import BandsWarning, InputError
 from asperity.fitting import determined
@@ -226,7 +226,8 @@ def fitted(
     count = whole("starts", starts or usual, "1 to 100", at_least=1, at_most=100)
     runs.most = _most_runs(asked, count)
     known, before = _known(replace(asked, free=()))
-    problem = replace(asked, measured=known)
+    problem = _with_choices_of_runs(replace(asked, measured=known))
+    case = problem.case
     problem = replace(problem, chance=replace(problem, free=()).chance_of_runs())
     received = f"{count_of(len(chosen), 'free key')} and {count_of(problem.count, 'value')}"
     require(len(chosen) < problem.count, "fit", received, "more values than free keys", "Free fewer keys.")
@@ -253,13 +254,27 @@ def fitted(
     return _told(case, problem, before, minima, left_open)
 
 
+def _with_choices_of_runs(problem: Problem) -> Problem:
+    """The same of a case in which what its runs chose stays, whatever is tried; a warning tells it."""
+    chosen = replace(problem, free=()).chosen_by_runs()
+    if not chosen:
+        return problem
+    case = problem.case.with_(**chosen)
+    for dotted in chosen:
+        told = in_words(getattr(case, dotted), entry_of(type(case), dotted).key)
+        stays = f"{dotted} = {told}, as the run of the case chose it, stays while others are tried"
+        warnings.warn(f"{stays}: give that of the measurement", BandsWarning, stacklevel=4)
+    return replace(problem, case=case, of_case=case_key("fit", FORMAT, case))
+
+
 def _most_runs(problem: Problem, starts: int) -> int:
     """Runs of a fit from so many starts at most, the one of the case as it is among them."""
     again = RUNS_AGAIN * (1 + (ROUNDS if problem.stated else 0))
     screened = SCREENED * (starts - 1)
     searched = RUNS * (starts if starts > 1 else 0) + RUNS + again
     held = 2 * len(problem.free) * again  # each key found to be contradicted, then held nevertheless
-    places = 1 + screened + searched + 2 * problem.places_of_slopes + held
+    chosen = int(any(of.chosen is not None for of in problem.observables))  # then it is run once more
+    places = 1 + chosen + screened + searched + 2 * problem.places_of_slopes + held
     return problem.runs_at_once * places + _runs_of_ends(problem)
 
 

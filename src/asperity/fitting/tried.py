@@ -14,7 +14,7 @@ from asperity.progress import Progress, which_of
 from asperity.running import run
 from asperity.store import Store, made
 
-RUN_FORMAT = 2
+RUN_FORMAT = 3
 """Raise it when what is kept of a run no longer means what it meant."""
 
 

@@ -2,6 +2,7 @@
 
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from xarray import DataTree
@@ -93,7 +94,19 @@ def _read_velocity(path: Path) -> list[Measured]:
 def _collect_line(tree: DataTree) -> Collected:
     envelope = tree[bearing.ENVELOPE.path].isel(law=0)
     frequency = np.asarray(envelope["envelope_frequency"].values)
-    return {"envelope": np.asarray(envelope.values), "envelope_frequency": frequency}
+    found = {"envelope": np.asarray(envelope.values), "envelope_frequency": frequency}
+    facts = tree[bearing.ENVELOPE_LOW.group].attrs
+    ends = [facts[each.name] for each in (bearing.ENVELOPE_LOW, bearing.ENVELOPE_HIGH) if each.name in facts]
+    return found | ({"envelope_band": np.array(ends)} if ends else {})
+
+
+def _chosen_band(trial: Predictable) -> dict[str, Any]:
+    """The band of the envelope, where the run chose it: another one has other lines, by tens of decibels."""
+    case = trial.case
+    assert isinstance(case, BearingUnderLoad)
+    if case.envelope_band is not None or "envelope_band" not in trial.collected:
+        return {}
+    return {"envelope_band": tuple(trial.collected["envelope_band"].tolist())}
 
 
 def _line(trial: Predictable, measured: Measured) -> Values:
@@ -122,5 +135,6 @@ OBSERVABLES = (
     Observable(VELOCITY, "m/s", "frequency (Hz)", 20.0, 1.0, _no_bearing, _velocity, _of_load,
                r"velocity", _read_velocity, _collect_velocity, "measured.band_velocity", _chance_of_velocity),
     Observable(LINE, "m/s²", "frequency (Hz)", 20.0, 1.0, _no_bearing, _line, _of_load,
-               r"envelope|amplitude.*m/s(\^?2|²)", _read_line, _collect_line, "measured.envelope_line"),
+               r"envelope|amplitude.*m/s(\^?2|²)", _read_line, _collect_line, "measured.envelope_line",
+               chosen=_chosen_band),
 )  # fmt: skip

@@ -149,6 +149,8 @@ class Observable:
         Key of a case that names a table of it, with its section.
     chance : callable, optional
         Standard deviation of each predicted value (n,), dB, by the chance of the record that was computed.
+    chosen : callable, optional
+        Keys, with their values, that a case does not give and that its run chose.
     """
 
     name: str
@@ -164,6 +166,7 @@ class Observable:
     collect: Callable[[DataTree], Collected] | None = None
     key: str = ""
     chance: Callable[[Collected, Measured], Array] | None = None
+    chosen: Callable[[Predictable], dict[str, Any]] | None = None
 
     @property
     def by_run(self) -> bool:
