@@ -23,7 +23,7 @@ def in_one_place(x):
 
 @compiled(**INNER)
 def inlined(x):
-    return x + 1.0
+    return max(x + 1.0, 1.0)
 
 @compiled(**CALLED)
 def called(x):
@@ -36,6 +36,10 @@ def calling(x):
 @compiled(**LOOP)
 def thrice(x):
     return 3.0 * x
+
+@compiled(**LOOP)
+def six_times(x):
+    return 2.0 * thrice(x)
 """
 
 
@@ -54,11 +58,17 @@ def module(tmp_path):
     return path
 
 
-def fresh(path):
-    """Kernels of a module that is imported anew, called once; how often one was found and compiled."""
+def anew(path):
+    """Import the kernels of a module anew."""
     spec = importlib.util.spec_from_file_location("kept_kernel", path)
     imported = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(imported)
+    return imported
+
+
+def fresh(path):
+    """Kernels of a module that is imported anew, called once; how often one was found and compiled."""
+    imported = anew(path)
     assert imported.calling(1.0) == 5.0
     assert imported.thrice(2.0) == 6.0
     stats = imported.calling.stats
@@ -80,6 +90,14 @@ def test_a_kernel_is_compiled_once_until_a_source_changes(folder, module, monkey
     assert fresh(module)[1:] == (0, 1)
     monkeypatch.setattr(options, "SOURCES", "another version")
     assert fresh(module)[1:] == (0, 1)
+
+
+def test_a_kernel_that_is_loaded_while_another_is_compiled_serves_python_too(folder, module):
+    fresh(module)
+    kernels = anew(module)
+    assert kernels.six_times(1.0) == 6.0
+    assert kernels.thrice(2.0) == 6.0
+    assert sum(kernels.thrice.stats.cache_hits.values()) == 1
 
 
 DAMAGE = {

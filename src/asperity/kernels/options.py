@@ -56,7 +56,7 @@ UNCHECKED: dict[str, Any] = {"error_model": "numpy"}
 """Divides without a look at the divisor: nothing leaves a loop then, which may become one of vectors."""
 DOCUMENTED = ("error_model", "fastmath", "inline", "nogil")
 HIDDEN = ("_nrt", "forceinline", "no_cpython_wrapper", "no_cfunc_wrapper")
-STEPS = ("_optimize_final_module", "_finalize_final_module", "_finalize_dynamic_globals")
+STEPS = ("_optimize_final_module", "_finalize_final_module")
 
 
 try:
@@ -97,22 +97,39 @@ def _garbage_left() -> Iterator[None]:
             gc.enable()
 
 
+@contextmanager
+def _collected_in(kind: type, codegen: Any) -> Iterator[None]:
+    """Let numba collect code in libraries of a kind meanwhile, that of its own functions, too."""
+    before = codegen._library_class
+    codegen._library_class = kind
+    try:
+        yield
+    finally:
+        codegen._library_class = before
+
+
 class _Compiler(Compiler):
     """Numba's compiler, of a kernel with an entry."""
 
     def compile_extra(self, function: Callable[..., Any]) -> Any:
-        """Compile a function."""
-        with _garbage_left():
+        """Compile a function, and of all that it calls no more than it needs."""
+        codegen = self.state.targetctx.codegen()
+        self.state.library = self._library(codegen, function.__qualname__)
+        with _garbage_left(), _collected_in(_Part, codegen):
             return super().compile_extra(function)
+
+    def _library(self, codegen: Any, name: str) -> Any:
+        """What the code is collected in."""
+        library = JITCodeLibrary(codegen, name)
+        library.enable_object_caching()
+        return library
 
 
 class _InnerCompiler(_Compiler):
     """That of a kernel without one."""
 
-    def compile_extra(self, function: Callable[..., Any]) -> Any:
-        """Compile a function, as far as others need it."""
-        self.state.library = _Part(self.state.targetctx.codegen(), function.__qualname__)
-        return super().compile_extra(function)
+    def _library(self, codegen: Any, name: str) -> Any:
+        return _Part(codegen, name)
 
 
 class _Part(JITCodeLibrary):
@@ -127,7 +144,6 @@ class _Part(JITCodeLibrary):
         pass
 
     def _finalize_final_module(self) -> None:
-        self._finalize_dynamic_globals()
         self._finalized = True
 
 
@@ -198,7 +214,8 @@ class Kept(NullCache):
             data = _read(folder / SOURCES, name)
             if data is not None:
                 rtsys.initialize(context)  # what machine code calls
-                return CompileResult._rebuild(context, *data)
+                with _collected_in(JITCodeLibrary, context.codegen()):  # even while another is compiled
+                    return CompileResult._rebuild(context, *data)
         COMPILATION.begin(name)
         return None
 
