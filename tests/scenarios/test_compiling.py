@@ -19,6 +19,7 @@ def started(monkeypatch):
 
     def idle(command, **options):
         found.append(popen([command[0], "-c", "input()"], **options))
+        found[-1].told = command[-1]
         return found[-1]
 
     monkeypatch.setattr(compiling.subprocess, "Popen", idle)
@@ -28,16 +29,17 @@ def started(monkeypatch):
 
 
 def test_a_second_process_runs_while_it_is_needed_and_is_waited_for(started, monkeypatch):
-    with compiling._contact_compiled_beside() as process:
+    with compiling._contact_compiled_beside(("whole",)) as process:
         assert started == [process]
         assert process.poll() is None
     assert process.poll() is not None
     monkeypatch.setattr(compiling, "PATIENCE", 0.01)
     told = []
-    compiling.compile_kernels(lambda *report: told.append(report))  # not for ever
+    compiling.compile_kernels(lambda *report: told.append(report), "whole", "covered")  # not for ever
+    assert "press_once(*('whole', 'covered'))" in started[1].told
     assert started[1].poll() is not None
     assert [told[0], told[-1]] == [(done, 2, "compiled functions") for done in (0, 2)]
-    with pytest.raises(KeyboardInterrupt), compiling._contact_compiled_beside():
+    with pytest.raises(KeyboardInterrupt), compiling._contact_compiled_beside(("whole",)):
         raise KeyboardInterrupt
     assert started[2].poll() is not None
 
@@ -52,14 +54,15 @@ def test_a_second_process_runs_while_it_is_needed_and_is_waited_for(started, mon
 )
 def test_there_is_none_where_it_is_of_no_use_or_cannot_be_started(started, monkeypatch, name, value):
     monkeypatch.setattr(f"asperity.scenarios.compiling.{name}", value)
-    with compiling._contact_compiled_beside() as other:
+    with compiling._contact_compiled_beside(("whole",)) as other:
         assert other is None
 
 
 def test_the_second_process_is_told_what_exists():
     """Its errors are seen by nobody."""
-    command = [sys.executable, "-c", compiling.BESIDE.partition(";")[0]]
-    assert subprocess.run(command, check=False).returncode == 0
+    command = [sys.executable, "-c", compiling.BESIDE.format(("whole",))]
+    with subprocess.Popen(command, stdin=subprocess.PIPE) as other:
+        assert other.wait() == 0
     assert f"{scanning.__name__}.{scanning.solve_positions.__name__}" == compiling.CONTACT
 
 
@@ -68,7 +71,7 @@ import time
 from asperity.scenarios import compiling
 compiling.BESIDE = compiling.BESIDE.partition("from asperity.scen")[0] + "import time; time.sleep(600)"
 compiling.processors, compiling.is_kept = lambda: 2, lambda function: False
-with compiling._contact_compiled_beside() as other:
+with compiling._contact_compiled_beside(("whole",)) as other:
     print(other.pid, flush=True)
     time.sleep(600)
 """

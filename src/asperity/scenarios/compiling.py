@@ -24,7 +24,7 @@ from asperity.threads import processors
 CONTACT = "asperity.kernels.scanning.solve_positions"
 BESIDE = (
     "from asperity.sandbox import end_with_parent; end_with_parent(); import gc, os; gc.disable(); "
-    "from asperity.scenarios.compiling import press_once; press_once('{}'); os._exit(0)"
+    "from asperity.scenarios.compiling import press_once; press_once(*{}); os._exit(0)"
 )
 """What a second process does: half of all compilation, so that a first demo takes two thirds of the time.
 
@@ -42,15 +42,14 @@ def compile_kernels(progress: Progress, *kinds: str) -> None:
     Contacts are those of kinds of cells, as in `HalfSpace`; whole ones where none are named.
     """
     cells = kinds or ("whole",)
-    with PhysicsWarning.ignored(), _contact_compiled_beside(cells[0]) as other:
+    with PhysicsWarning.ignored(), _contact_compiled_beside(cells) as other:
         progress(0, 2, COMPILED)
         roll_once()
         progress(1, 2, COMPILED)
         if other is not None:
             with suppress(subprocess.TimeoutExpired):
                 other.wait(PATIENCE)
-        for kind in cells:
-            press_once(kind)
+        press_once(*cells)
         progress(2, 2, COMPILED)
 
 
@@ -61,7 +60,7 @@ def time_to_compile() -> float:
 
 
 @contextmanager
-def _contact_compiled_beside(cells: str = "whole") -> Iterator[subprocess.Popen[bytes] | None]:
+def _contact_compiled_beside(cells: tuple[str, ...]) -> Iterator[subprocess.Popen[bytes] | None]:
     """Compile the contact in a second process, unless it is on disk or no process can be started."""
     other = None
     null = subprocess.DEVNULL
@@ -90,10 +89,12 @@ def roll_once() -> None:
     pointforce.evaluate_all(law.prepare(np.zeros(2)), np.zeros(2), 0)
 
 
-def press_once(cells: str = "whole") -> None:
-    """Press a body, to an approach and under a load, and estimate an approach."""
-    half_space = HalfSpace((9, 9), (1.0, 1.0), 1.0, cells=cells)
+def press_once(*kinds: str) -> None:
+    """Press a body on each kind of cells, to an approach and under a load, and estimate an approach."""
     x = np.arange(-4.0, 5.0) ** 2
-    half_space.solve(np.add.outer(x, x), approach=5.0)
-    half_space.solve(np.add.outer(x, x), load=5.0)
+    gap = np.add.outer(x, x)
+    for cells in kinds:
+        half_space = HalfSpace((9, 9), (1.0, 1.0), 1.0, cells=cells)
+        half_space.solve(gap, approach=5.0)
+        half_space.solve(gap, load=5.0)
     box.foundation_approach(np.zeros((9, 9)), 1.0, 1.0, 1.0, np.inf)
