@@ -17,7 +17,7 @@ from asperity.errors import BandsWarning
 from asperity.fitting import tried as fitted_to
 from asperity.fitting.free import free_key
 from asperity.fitting.running import measured_for
-from asperity.fitting.tried import TriedCase
+from asperity.fitting.tried import FitRuns, TriedCase
 from asperity.observables.observable import Measured
 from asperity.scenes import schema
 from asperity.schema import bearing, contact, group, spectra
@@ -107,6 +107,14 @@ def test_roughness_is_fitted_to_forces_with_few_runs(beam):
     assert most == sorted(most, reverse=True)
     assert len(calls) <= most[-1] < most[0]
     assert found.case.surface.rms == found.values["surface.rms"]
+
+
+def test_more_runs_than_were_counted_are_not_more_than_there_are_at_most():
+    told = []
+    runs = FitRuns(lambda *step: told.append(step[2]), most=1)
+    for _ in range(2):
+        runs.begun()(0, 1, "rolling")
+    assert told == ["run 1 of at most 1: rolling", "run 2 of at most 2: rolling"]
 
 
 def test_bands_that_the_case_has_not_are_left_out_and_told(beam):
