@@ -34,8 +34,11 @@ def test_a_second_process_runs_while_it_is_needed_and_is_waited_for(started, mon
         assert process.poll() is None
     assert process.poll() is not None
     monkeypatch.setattr(compiling, "PATIENCE", 0.01)
-    told = []
+    told, pressed, half_space = [], [], compiling.HalfSpace
+    look = lambda *given, cells: pressed.append(cells) or half_space(*given, cells=cells)  # noqa: E731
+    monkeypatch.setattr(compiling, "HalfSpace", look)
     compiling.compile_kernels(lambda *report: told.append(report), "whole", "covered")  # not for ever
+    assert pressed == ["whole", "covered"]
     assert "press_once(*('whole', 'covered'))" in started[1].told
     assert started[1].poll() is not None
     assert [told[0], told[-1]] == [(done, 2, "compiled functions") for done in (0, 2)]
