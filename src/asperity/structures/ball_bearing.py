@@ -105,13 +105,13 @@ class BallBearing:
     ELEMENT: ClassVar = "ball"
     """What rolls in it."""
     LEFT_OUT: ClassVar = (
-        "There is no film of lubricant, no friction, no shoulder of a groove, and no tilt of a ring; the "
-        "contact angle is that of the static load."
+        "There is no film of lubricant, no friction in the motion, no shoulder of a groove, and no tilt of a "
+        "ring; the contact angle is that of the static load."
     )
     """What no computation of it has."""
     LEFT_OUT_OILED: ClassVar = (
-        "Contacts are full of oil; there is no friction, no shoulder of a groove, and no tilt of a ring; "
-        "contact angle and static loads are those without oil."
+        "Contacts are full of oil; there is no friction in the motion, no shoulder of a groove, and no tilt "
+        "of a ring; contact angle and static loads are those without oil."
     )
     """What none with oil has."""
     SOURCE: ClassVar = "H. Hertz, J. reine angew. Math. 92 (1882) 156 (contact of smooth bodies)."
@@ -144,7 +144,7 @@ class BallBearing:
     arch_angle: float | None = parameter(
         Quantity("rad", above=0),
         "35 deg",
-        "angle at which a ball touches both flanks of each groove: a gothic arch, of four-point contact",
+        "angle at which a ball touches both flanks of each groove, a gothic arch; for bearings at rest alone",
         _ANGLES,
         default=None,
     )
