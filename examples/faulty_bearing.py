@@ -14,7 +14,8 @@ from asperity import BallBearing
 from asperity.diagnostics import envelope_spectrum
 from asperity.laws import HertzLaw
 from asperity.rolling import BearingRings, roll_bearing
-from asperity.scenarios.raceway_laws import raceway_laws, raceway_on
+from asperity.scenarios.raceway_grids import raceway_on
+from asperity.scenarios.raceway_laws import raceway_laws
 from asperity.structures.ring import Ring
 from asperity.surfaces.faults import Fault
 

@@ -42,6 +42,17 @@ def test_what_else_the_speed_may_be_is_said():
     assert " a shaft at 58." in diagnosis_sentence(found).split(" would have them, too.")[0]
 
 
+@pytest.mark.parametrize("share", [1.0 / 3.0, 0.5, 2.0 / 3.0, 0.75, 4.0 / 3.0, 1.5, 2.0, 3.0])
+def test_a_shaft_that_is_heard_more_clearly_than_that_of_the_speed_is_named(share):
+    """Two shafts, the one told fainter than the other, whose speed is a share of it."""
+    time = np.arange(24_000) / RATE
+    told = SPEED / share
+    faint = sum(np.sin(2.0 * np.pi * told * n * time + n) for n in (1, 2, 3, 4, 5, 7, 8, 10, 11))
+    found = diagnose(shaft_alone(range(1, 21)) + 0.05 * faint, RATE, TONES, told)
+    assert found.speed_is == "unconfirmed"
+    assert any(each == pytest.approx(SPEED, rel=0.01) for each in found.others)
+
+
 @pytest.mark.parametrize("factor", [2.0 * np.pi, 0.16, 7.0])
 @pytest.mark.parametrize("part", ["outer", "inner"])
 def test_speeds_in_other_units_are_told_where_they_are(part, factor):

@@ -17,6 +17,7 @@ from asperity.contact.hertz import Hertz
 from asperity.errors import InputError
 from asperity.reference.materials import Material
 from asperity.structures import bearing_friction
+from asperity.structures.ball_bearing import Kinematics
 from asperity.structures.bearing_creepage import creepage_of
 from asperity.structures.bearing_friction import BallOnRaceway, friction_of_balls, rolling_speed, torque_of
 
@@ -177,3 +178,10 @@ def test_a_ball_gyrates_by_the_change_of_its_momentum_as_its_axis_goes_round():
     friction = friction_of_balls(loaded, found, turning, 0.1)
     np.testing.assert_allclose(friction.gyration, moment / held, rtol=1e-5)
     assert np.all(friction_of_balls(loaded, found, turning, 0.01).gyration > 5.0 * friction.gyration)
+
+
+def test_torque_turns_one_ring_against_the_other():
+    """2 W between rings that turn 30 times a second against each other, whichever of them turns, and how."""
+    for inner, outer in ((30.0, 0.0), (0.0, -30.0), (20.0, -10.0), (40.0, 10.0)):
+        turning = Kinematics(9, inner, outer, 12.0, 70.0)
+        assert torque_of(np.array(2.0), turning) == pytest.approx(2.0 / (2.0 * math.pi * 30.0))
