@@ -12,6 +12,7 @@ from asperity import laws, report, run
 from asperity.case.cases import as_case, parse_case, template
 from asperity.errors import CaseError, InputError
 from asperity.laws import LawSpec, Look, Need, Role, Variant
+from asperity.surfaces.cell_means import pressed_heights
 from small_cases import CASES
 
 
@@ -195,13 +196,21 @@ def test_materials_are_what_they_say(registered):
     filtering = (Variant("f", "So.", every),)
     registered(replace(SPRING, build=build, needs=every - {Need.FILTER}, variants=filtering))
     run(case("spring", "spring-f"))
+    assert seen["spring"].cells == "covered"
+    pressed = seen["spring"].heights
+    run(case("spring", "spring-f").with_(contact={"rim_cells": "whole"}))
     bare, filtered = seen["spring"], seen["spring-f"]
+    assert bare.cells == "whole"
     assert bare.line.heights.shape[0] == 1 < filtered.line.heights.shape[0]
     assert np.std(filtered.line.heights[0]) < np.std(bare.line.heights[0])
     assert filtered.line_at_load.heights.shape == bare.line.heights.shape
     rows, ny = bare.heights.shape
     assert (rows, ny) == (bare.line.heights.shape[1], bare.body.shape[1])
     assert bare.heights[:, ny // 2] == pytest.approx(-bare.line.heights[0], abs=1e-15)
+    inside = slice(2, -2)  # beyond the ends other heights are known
+    np.testing.assert_allclose(
+        pressed[inside, inside], pressed_heights(bare.heights)[inside, inside], atol=1e-15
+    )
     approach, stiffness = bare.working_point
     assert bare.hertz_constant * approach**1.5 == pytest.approx(bare.load, rel=1e-9)
     assert stiffness == pytest.approx(1.5 * bare.load / approach, rel=1e-9)

@@ -334,7 +334,7 @@ class Materials:
 
     @property
     def heights(self) -> Array:
-        """Heights of the path with its defects, m, peaks positive, shape (rows, ny) (SURFACE)."""
+        """Heights (rows, ny) of the path with its defects, m, peaks positive, for `cells` (SURFACE)."""
         sound, faults = self.sound_heights, self.faults
         return sound if faults is None else sound + faults
 
