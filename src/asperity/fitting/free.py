@@ -118,7 +118,8 @@ def free_key(case: AnyCase, dotted: str, within: Range | None = None) -> Free:
     elif within is None:
         low, high, why = *_own_limits(dotted, entry.key), "limits of the key"
         if low == 0.0 and given and start > 0.0:
-            low, why = LEAST_PART * start, f"from {LEAST_PART:g} of the case's value to the limit of the key"
+            low = LEAST_PART * start
+            why = f"from {LEAST_PART:g} of the case's value to the limit of the key"
     else:
         low, high, why = *within, "given here"
         for end in within:

@@ -82,7 +82,8 @@ class Bowl:
             return End(at + by)
         others = self.inside[self.inside != number]
         back = np.asarray(np.linalg.pinv(self.slopes[:, others]), dtype=float)
-        along, bent = -back @ self.slopes[:, number], np.zeros(len(others))
+        along = -back @ self.slopes[:, number]
+        bent = np.zeros(len(others))
         tried = [(0.0, 0.0)]  # heights, and the steps that have them
         step = by
         for _ in range(MOST):

@@ -108,7 +108,8 @@ def _operation(symbol: Any, instruction: str) -> None:
     @lower_builtin(symbol, Lanes, Lanes)
     @lower_builtin(symbol, types.Float, Lanes)
     def lowered(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        (left, right), kind = arguments, signature.args[1]
+        left, right = arguments
+        kind = signature.args[1]
         if not isinstance(signature.args[0], Lanes):
             left = _broadcast(builder, context.cast(builder, left, signature.args[0], kind.number), kind)
         # "contract": a product and a sum may become one instruction

@@ -31,7 +31,8 @@ def inverse_stencil(table: NDArray) -> NDArray:
     n = 32
     symbol = quarter_spectrum(quarter_spectrum(table[:n, :n], 1), 0)
     q = 2.0 * np.pi * (np.arange(n) + 0.25) / n
-    qx, qy = q[:, None], q[None, :]
+    qx = q[:, None]
+    qy = q[None, :]
     cx, cy = np.cos(qx), np.cos(qy)
     one = np.ones_like(symbol)
     taps = [one, 2 * cx * one, 2 * cy * one, 4 * cx * cy, 2 * np.cos(2 * qx) * one, 2 * np.cos(2 * qy) * one]
@@ -51,11 +52,21 @@ def precondition(b: Box, taps: NDArray, target: NDArray) -> tuple[float, float, 
     Returns m·target, (m − previous)·target and the sum of the target.
     """
     row = b.pitch
-    above, m, below = b.masked[row - 1 :], b.masked[2 * row - 2 :], b.masked[3 * row - 1 :]
-    top, bottom = b.masked, b.masked[4 * row :]
-    c0, c1, c2, c3, c4, c5 = taps[0], taps[1], taps[2], taps[3], taps[4], taps[5]
+    above = b.masked[row - 1 :]
+    m = b.masked[2 * row - 2 :]
+    below = b.masked[3 * row - 1 :]
+    top = b.masked
+    bottom = b.masked[4 * row :]
+    c0 = taps[0]
+    c1 = taps[1]
+    c2 = taps[2]
+    c3 = taps[3]
+    c4 = taps[4]
+    c5 = taps[5]
     zero = b.z.dtype.type(0.0)
-    rho, change, total = zero, zero, zero
+    rho = zero
+    change = zero
+    total = zero
     for q in range(len(target)):
         g = m[q + 2]
         s = c0 * g + c1 * (above[q + 1] + below[q + 1]) + c2 * (m[q + 1] + m[q + 3])
@@ -117,10 +128,16 @@ class Task(NamedTuple):
 def _free(pressure: NDArray, b: Box, hardness: float, level: float, tolerance: float) -> float:
     """Mask the residual above a level with the free set; return how many cells violate complementarity."""
     real = b.z.dtype.type  # numbers of another precision would be computed with in double
-    zero, one, target = real(0.0), real(1.0), b.masked[REACH * b.pitch :]
-    hardness, level, tolerance, violated = real(hardness), real(level), real(tolerance), zero
+    zero = real(0.0)
+    one = real(1.0)
+    target = b.masked[REACH * b.pitch :]
+    hardness = real(hardness)
+    level = real(level)
+    tolerance = real(tolerance)
+    violated = zero
     for q in range(len(pressure)):
-        p, r = pressure[q], b.residual[q] - level
+        p = pressure[q]
+        r = b.residual[q] - level
         masked = r if p > zero else min(r, zero)
         masked = masked if p < hardness else max(masked, zero)
         target[q] = masked
@@ -131,7 +148,8 @@ def _free(pressure: NDArray, b: Box, hardness: float, level: float, tolerance: f
 @compiled(**INNER, **REASSOCIATE)
 def _turn(b: Box, beta: float) -> None:
     """Set the search direction from z and the one before."""
-    zero, factor = b.z.dtype.type(0.0), b.z.dtype.type(beta)
+    zero = b.z.dtype.type(0.0)
+    factor = b.z.dtype.type(beta)
     for q in range(len(b.z)):
         b.direction[q] = factor * b.direction[q] - b.z[q] if b.z[q] != zero else zero
 
@@ -159,7 +177,10 @@ def _project(b: Box, length: float, hardness: float) -> tuple[float, float]:
     Returns its work against the residual, and how many cells the bounds held back.
     """
     real = b.z.dtype.type
-    zero, one, factor, cap = real(0.0), real(1.0), real(length), real(hardness)
+    zero = real(0.0)
+    one = real(1.0)
+    factor = real(length)
+    cap = real(hardness)
     work, clipped = zero, zero
     for q in range(len(b.z)):
         wanted = b.pressure[q] + factor * b.direction[q]
@@ -199,8 +220,11 @@ def _leaves(b: Box, share: float, hardness: float) -> bool:
 def _advance(b: Box, share: float, hardness: float, margin: float) -> None:
     """Go a share of the step, within the bounds, and on them within a margin."""
     real = b.z.dtype.type
-    zero, factor, cap = real(0.0), real(share), real(hardness)
-    low, high = real(margin), real(hardness - margin)
+    zero = real(0.0)
+    factor = real(share)
+    cap = real(hardness)
+    low = real(margin)
+    high = real(hardness - margin)
     for q in range(len(b.z)):
         wanted = b.pressure[q] + factor * b.step[q]
         wanted = zero if wanted <= low else wanted
@@ -247,17 +271,23 @@ def survey(
     level = find_level(b, task.hardness) if task.total >= 0.0 else 0.0
     if rims is not None:
         set_shares(b, rims, stiffness)
-    first, end, left, right = b.nx, 0, b.ny, 0
+    first = b.nx
+    end = 0
+    left = b.ny
+    right = 0
     worst, total = 0.0, 0.0
     for i in range(b.nx):
         for j in range(b.ny):
-            p, r = b.pressure[i * b.pitch + j], b.residual[i * b.pitch + j] - level
+            p = b.pressure[i * b.pitch + j]
+            r = b.residual[i * b.pitch + j] - level
             if p > 0.0 or r < 0.0:
                 unmet = abs(r) if p < task.hardness else r
                 worst = max(worst, unmet if rims is None else unmet * b.z[i * b.pitch + j])
                 total += p
-                first, end = min(first, i), i + 1
-                left, right = min(left, j), max(right, j + 1)
+                first = min(first, i)
+                end = i + 1
+                left = min(left, j)
+                right = max(right, j + 1)
     level -= task.compliance * total
     return (worst, level, first, end, left, right) if end else (worst, level, 0, 0, 0, 0)
 
@@ -288,9 +318,15 @@ def solve(
     left them; the edges in this box. Returns the iterations in all, with those done before, and whether there
     is a step that lowers the energy: if not, rounding allows no more.
     """
-    cap, at_load, level = task.hardness, task.total >= 0.0, 0.0
+    cap = task.hardness
+    at_load = task.total >= 0.0
+    level = 0.0
     margin = rounding(cap, task.total)
-    rho, length, iteration, moving, yielded = 0.0, 1.0, done, True, 0.0
+    rho = 0.0
+    length = 1.0
+    iteration = done
+    moving = True
+    yielded = 0.0
     for q in range(len(b.pressure)):
         yielded += task.compliance * b.pressure[q]
     while iteration < task.max_iterations:

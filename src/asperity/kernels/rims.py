@@ -193,15 +193,15 @@ def _mark_rims(b: Box, side: float, level: float) -> None:
     """
     real = b.z.dtype.type
     zero, one = real(0.0), real(1.0)
-    most, steep, wide, rise, level = (
-        real(END**4),
-        real(side * STEEP),
-        real(side * MOST_LEFT),
-        real(side),
-        real(level),
-    )
+    most = real(END**4)
+    steep = real(side * STEEP)
+    wide = real(side * MOST_LEFT)
+    rise = real(side)
+    level = real(level)
     margin = (len(b.framed) - len(b.z)) // 2
-    above, middle, below = b.framed[margin - b.pitch :], b.framed[margin - 1 :], b.framed[margin + b.pitch :]
+    above = b.framed[margin - b.pitch :]
+    middle = b.framed[margin - 1 :]
+    below = b.framed[margin + b.pitch :]
     for q in range(len(b.z)):
         p = middle[q + 1]
         x = abs(below[q] - above[q])
@@ -262,7 +262,11 @@ def _compute(c: NDArray, count: int, x_share: float, y_share: float, stiffness: 
     for k in range(count):
         p, unmet = c[P * CHUNK + k], c[UNMET * CHUNK + k]
         found = _at_rim(p, c[X * CHUNK + k], c[Y * CHUNK + k], x_share, y_share)
-        scale, step, ratio, left, slope = found[0], found[1], found[2], found[4], found[5]
+        scale = found[0]
+        step = found[1]
+        ratio = found[2]
+        left = found[4]
+        slope = found[5]
         unmet -= scale * left
         # what p - p₀ + stiffness (unmet - gap + gap₀) = 0 gives, the gap straight in the ratio
         steep = min(slope, -LEAST_SLOPE)

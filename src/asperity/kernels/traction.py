@@ -95,7 +95,8 @@ def _multiply(spectra: NDArray, place: int, x: NDArray, p: int, y: NDArray, q: i
     b = fi - gi
     c = fi + gi
     d = gr - fr  # twice the spectra of both directions
-    (xr, xi), (yr, yi) = read_parts(spectra, place), read_parts(spectra, place + 2 * n)
+    xr, xi = read_parts(spectra, place)
+    yr, yi = read_parts(spectra, place + 2 * n)
     mr, mi = read_parts(spectra, place + 4 * n)
     ur = xr * a - xi * b + mr * c - mi * d
     ui = xr * b + xi * a + mr * d + mi * c

@@ -161,8 +161,9 @@ def _doubt_lengths(case: Case) -> None:
         told = f"at rest bodies approach by {rounded(1e6 * approach)} µm, beside which that is none"
         _warn("surface.joint_depth", deep, "m", told, "um")
     touching = 2.0 * contact.semi_axes(approach)[0]
-    chords = {"flat_length": body.flat_length}
-    chords["flat_depth"] = body.flat_depth and math.sqrt(8.0 * body.radius * body.flat_depth)
+    sunk = body.flat_depth
+    by_depth = None if sunk is None else math.sqrt(8.0 * body.radius * sunk)
+    chords = {"flat_length": body.flat_length, "flat_depth": by_depth}
     for key, chord in chords.items():
         if chord is not None and chord < touching:
             flat, patch = (f"{rounded(1e3 * each)} mm long" for each in (chord, touching))

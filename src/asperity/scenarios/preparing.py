@@ -154,7 +154,8 @@ def scans_of(prepared: PreparedCase, states: Array) -> dict[str, list[ScanJob]]:
     def scans(
         strips: Sequence[Strip], on: Geometry, of: slice, stride: int, accuracy: float, anchor: int = 0
     ) -> list[ScanJob]:
-        half_space, rtol = on.half_space(None), rtol_for(accuracy * case.numerics.force_accuracy)
+        half_space = on.half_space(None)
+        rtol = rtol_for(accuracy * case.numerics.force_accuracy)
         at = states[of]
         return [ScanJob(half_space, strip, on.body, at, stride, rtol, anchor=anchor) for strip in strips]
 
@@ -261,7 +262,8 @@ def doubt_deflection(prepared: PreparedCase) -> None:
     Where the record begins, in its middle, and where it ends; supports are left out, on which nothing moves,
     and what nothing holds. A rail is looked at under one load.
     """
-    scene, (first, last) = prepared.scene, prepared.case.rolled_range
+    scene = prepared.scene
+    first, last = prepared.case.rolled_range
     over = scene.over
     static = list[Array]()
     if isinstance(over, Track):

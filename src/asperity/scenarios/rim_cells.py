@@ -44,7 +44,9 @@ def with_rims(prepared: PreparedCase) -> PreparedCase:
 
 def _chosen(prepared: PreparedCase) -> tuple[str, str]:
     """Kind of cells that suits laws which see heights, and why."""
-    case, shape, maps = prepared.case, prepared.shape, prepared.textures.maps
+    case = prepared.case
+    shape = prepared.shape
+    maps = prepared.textures.maps
     if case.has_defect:
         return "whole", "covered ones have not been held to flats and joints"
     if find_device() is not None:

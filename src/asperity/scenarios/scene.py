@@ -108,7 +108,8 @@ def scene_of(case: Case) -> Scene:
         model = over.model(highest)
     except InputError as error:
         raise _of_modes(case, error) from None
-    on_track, (place, _) = isinstance(model, Track), case.contact_places
+    on_track = isinstance(model, Track)
+    place, _ = case.contact_places
     one = body.model(case.upper_stiffness, highest, case.speed, case.ROLLING, place)
     degrees = body.degrees if len(body.degrees) > 1 or case.ROLLING == "body" else {case.ROLLING: 1.0}
     return Scene(

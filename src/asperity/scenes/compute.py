@@ -103,8 +103,11 @@ class Computed(ReducedCase, RecordedRuns):
 
 def compute(prepared: PreparedCase, progress: Progress) -> Computed:
     """Run the textures of a case in, if it asks for it, reduce its samples, build its laws and roll each."""
-    case, scene, run_in, ran = prepared.case, prepared.scene, prepared, Values()
-    store, seconds, last = Store(), dict(prepared.seconds), time.perf_counter()
+    case = prepared.case
+    scene = prepared.scene
+    store = Store()
+    seconds = dict(prepared.seconds)
+    last = time.perf_counter()
 
     def book(part: str) -> None:
         """Book the time since the last part on this one."""
@@ -119,9 +122,8 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
     book("what is rolled over")
     which, others = other_contacts(case, scene.loads)
     duration = recorded_time(case, prepared.textures)
-    if case.contact.running_in is not None:
-        textures, ran = run_in_case(prepared, progress)
-        run_in = replace(prepared, textures=textures)
+    run_in, ran = _run_in(prepared, progress)
+    if run_in is not prepared:
         book("running in")
     first = reduced_case(run_in, progress)
     book("reduction")
@@ -170,6 +172,14 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
     computed = replace(computed, points=_passed(computed, progress))
     book("passed points")
     return computed
+
+
+def _run_in(prepared: PreparedCase, progress: Progress) -> tuple[PreparedCase, Values]:
+    """The case with its textures run in, where it asks for that, and what running in says."""
+    if prepared.case.contact.running_in is None:
+        return prepared, Values()
+    textures, ran = run_in_case(prepared, progress)
+    return replace(prepared, textures=textures), ran
 
 
 def _visited(paths: int, run: RolledBodies) -> list[tuple[float, float]]:

@@ -108,7 +108,8 @@ def _homogeneity(maps: tuple[HeightMap, ...]) -> Values:
     p_values = [f.p_value for f in found]
     if statistics.more_than_chance(p_values):
         failed = sum(not f.homogeneous for f in found)
-        worst, (along, across) = max(found, key=lambda f: f.variation / f.expected), statistics.TILES
+        worst = max(found, key=lambda f: f.variation / f.expected)
+        along, across = statistics.TILES
         InhomogeneousWarning.warn(
             f"{failed} of {len(maps)} measured maps are not the same everywhere "
             f"(p ≤ {statistics.SIGNIFICANCE:g}): the mean squares of {along} × {across} tiles vary by up to "

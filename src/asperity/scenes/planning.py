@@ -23,7 +23,8 @@ def planned_scene(prepared: PreparedCase, progress: Progress) -> Plan:
 
 def plan(prepared: PreparedCase, work: Work, choice: LawChoice | None = None) -> list[tuple[str, str]]:
     """List what will be computed and how much work it is, from `asperity.scenarios.preparing.expect`."""
-    case, (nx, ny) = prepared.case, prepared.shape.body.shape
+    case = prepared.case
+    nx, ny = prepared.shape.body.shape
     contact, settling = case.contact, case.settled_time
     states = STATES if contact.approaches is None else len(contact.approaches)
     first, last = case.rolled_range

@@ -316,7 +316,8 @@ _TOO_SMALL = "Their force is too small."
 
 def _cut_off(computed: Computed) -> Iterator[Finding]:
     """Contacts that the window cuts off: those that are rolled, and all that were solved."""
-    reduction, (main, run) = computed.reduction, next(iter(computed.runs.items()))
+    reduction = computed.reduction
+    main, run = next(iter(computed.runs.items()))
     assert reduction is not None
     ensemble = reduction.ensemble
     held = float(ensemble.mean_force[ensemble.held - 1]) if ensemble.held else 0.0
