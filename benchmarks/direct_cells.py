@@ -110,6 +110,7 @@ TEMPLATES = {
 TRIED = {
     "fine": ("covered", 2),
     "whole": ("whole", 1),
+    "auto": ("auto", 1),
     "covered": ("covered", 1),
     "coarse": ("covered", 2 / 3),
 }

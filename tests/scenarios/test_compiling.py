@@ -91,3 +91,12 @@ def test_no_process_compiles_on_after_the_first_was_killed():
         while " Z " not in other.read_text():  # nor that, where nobody waits for it
             assert time.monotonic() < begun + 60.0
             time.sleep(0.01)
+
+
+def test_time_is_told_once_of_what_both_kinds_of_cells_share(monkeypatch):
+    told = compiling.time_to_compile
+    monkeypatch.setattr(compiling, "is_kept", lambda kernel: False)
+    shared = told("whole") + told("covered") - told("whole", "covered")
+    assert shared == compiling.ROLLING_TIME + compiling.CONTACT_TIME < told("whole") < told("covered")
+    monkeypatch.setattr(compiling, "is_kept", lambda kernel: kernel == compiling.CONTACT)
+    assert told("whole", "covered") == compiling.ROLLING_TIME

@@ -214,7 +214,7 @@ def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], preparin
         rows.insert(
             1, ("load that turns", f"{in_newtons(case.rotating)}, once in {1e3 / case.speed:.4g} ms{fastest}")
         )
-    return rows, preparing.Work({}, solutions, steps, None, taken, pace * compiling.time_to_compile())
+    return rows, preparing.Work({}, solutions, steps, None, taken, pace * compiling.time_to_compile("whole"))
 
 
 def films_in_words(prepared: PreparedBearing) -> list[tuple[str, str]]:

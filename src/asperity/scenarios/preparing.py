@@ -371,4 +371,6 @@ def expect(prepared: PreparedCase, progress: Progress) -> Work:
     beside = frozenset(part for part in parts if part.startswith("the scan ")) | {"the moving kernel"}
     counts = solutions | dict.fromkeys(solved, steps * contacts)
     taken = run_time.RunTime(parts, beside)
-    return Work(scans, counts, steps, trial, taken, pace * compiling.time_to_compile())
+    return Work(
+        scans, counts, steps, trial, taken, pace * compiling.time_to_compile(*prepared.kinds_of_cells)
+    )
