@@ -143,7 +143,7 @@ def test_the_energy_of_sprung_wheels_on_a_rail_closes(between):
 def test_what_a_spring_carries_above_two_wheels_may_be_a_structure(between):
     """A free mass that a spring presses on each wheel, against masses that are coordinates of the bodies."""
     above, spring, damper, load = 1200.0, 2e7, 3e4, 40e3
-    law = HertzLaw(9.4e10, texture(3e-5), damping=2e3)
+    law = HertzLaw(9.4e10, texture(4e-5), damping=2e3)
     path = Path.laid(PATH["start"], SPEED, STEP, PATH["duration"], PATH["settling"]).ahead([0.0, 2.5])
     on_rail = [RollingContact(law, along.places, (Side(0, along),)) for along in path.trajectories]
 
@@ -170,7 +170,7 @@ def test_what_a_spring_carries_above_two_wheels_may_be_a_structure(between):
     same(run.contact_force[::2], expected, 1e-3)  # of the damper, in steps
     assert np.ptp(run.contact_force[1::2]) > 0.05 * LOAD
     assert run.energy.residual < 1e-9
-    assert run.energy.shares["structure"] > 1e4 * run.energy.residual * run.energy.throughput
+    assert run.energy.shares["structure"] > 1e-4 * run.energy.throughput
 
 
 def test_wheels_go_on_where_they_were_on_poles_as_good_as_the_kernels_themselves(kernel, between):
