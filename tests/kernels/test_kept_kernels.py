@@ -196,7 +196,8 @@ def apart(script, module, **environment):
 @pytest.mark.skipif(sys.platform == "win32", reason="homes are found in another way there")
 def test_without_a_home_and_an_entry_of_the_user(module, tmp_path):
     """As a container with a bare number as user has it."""
-    environment = {k: v for k, v in os.environ.items() if k not in ("HOME", "ASPERITY_CACHE", store.KERNELS)}
+    unset = ("HOME", "XDG_CACHE_HOME", "ASPERITY_CACHE", store.KERNELS)
+    environment = {k: v for k, v in os.environ.items() if k not in unset}
     private = tmp_path / f"asperity-{os.getuid()}"
     assert apart(NO_HOME, module, **environment | {"TMPDIR": str(tmp_path)}) == f"5.0 {private}"
     assert files(private / "kernels")
