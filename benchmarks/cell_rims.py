@@ -15,8 +15,9 @@ cell over the half-width h/a. Balls of all sizes, at random places on the grid, 
 
     left = left₀(√(p/S), slant) + h/a · left₁(√(p/S), slant)
 
-with cubic splines on the knots of the kernel, straight between slants. The curves are those of h/a = 1/9,
-between a straight rim and the smallest contacts that have a rim at all.
+with cubic splines on the knots of the kernel, straight between slants. The curves of the gap are those of
+h/a = 1/9, between a straight rim and the smallest contacts that have a rim at all. The covered share is
+fitted likewise, to contacts solved with these, and both of its parts are kept: h/a is seen in the pressure.
 """
 
 import argparse
@@ -30,7 +31,7 @@ from asperity import HalfSpace, Hertz
 from asperity.contact.scan import ScanJob, scan_forces
 from asperity.kernels.batched import convolve_padded, padded_spectrum
 from asperity.kernels.influence import means_table
-from asperity.kernels.rims import END, KNOTS, PER_UNIT, SLANTS, cubics
+from asperity.kernels.rims import END, KNOTS, PER_UNIT, SLANTS, cubics, every_knot
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.rim_cells import roughness_within
 from asperity.surfaces.cell_means import cell_means, pressed_heights
@@ -63,8 +64,11 @@ def means_of_ball(x, y):
     )
 
 
-def cells_of_ball(across, offset):
-    """Ratio, slant, gap that is left, covered share and side of cells at the rim of a ball's contact."""
+def cells_of_ball(across, offset, solved):
+    """Ratio, slant, gap that is left, covered share and side of cells at the rim of a ball's contact.
+
+    Pressures are those of Hertz, or solved on the cells, with the curves of the gap that the kernel has.
+    """
     side, count = 1.0 / across, math.ceil(across) + 4
     edges = [(np.arange(-count, count + 2) - 0.5 + o) * side for o in offset]
     (pressure, covered), size = means_of_ball(*edges), 2 * count + 1
@@ -72,6 +76,9 @@ def cells_of_ball(across, offset):
     spectrum = padded_spectrum(means_table(size, size, side, side) / math.pi, size, size)
     x, y = (0.5 * (e[1:] + e[:-1]) for e in edges)
     undeformed = 0.5 * np.add.outer(x**2, y**2) + side**2 / 12.0
+    if solved:
+        space = HalfSpace((size, size), side, 1.0, cells="covered")
+        pressure = space.solve(undeformed, approach=1.0, start=pressure, rtol=1e-8).pressure
     gap = convolve_padded(pressure[None], spectrum, np)[0] + undeformed - 1.0
     p = np.pad(pressure, 1)
     along, across_it = np.abs(p[2:, 1:-1] - p[:-2, 1:-1]), np.abs(p[1:-1, 2:] - p[1:-1, :-2])
@@ -97,12 +104,13 @@ def influence_of_knots(ratio, slant):
     return found.reshape(len(ratio), -1)
 
 
-def fitted(cells, values, first, last, fine, smoothness=1e-3):
-    """Curves (SLANTS, KNOTS) of a side `fine`; `first` and `last` values are given, or None."""
+def fitted(cells, values, first, last, sides, smoothness=1e-3):
+    """Curves (SLANTS, KNOTS) of a straight rim, and what they gain per side at every third knot.
+
+    At the sides h/a of `sides` the `first` and `last` values are given, or None.
+    """
     knots = influence_of_knots(cells[0], cells[1])
-    thick = np.zeros((KNOTS, KNOTS // 3 + 1))  # h/a counts smoothly
-    for n in range(thick.shape[1]):
-        thick[:, n] = np.maximum(1.0 - np.abs(np.arange(KNOTS) / 3.0 - n), 0.0)
+    thick = every_knot(np.eye(KNOTS // 3 + 1)).T  # h/a counts smoothly
     with_side = knots.reshape(-1, SLANTS, KNOTS) @ thick
     with_side = with_side.reshape(len(knots), -1) * cells[4][:, None]
     bend = np.kron(np.eye(SLANTS), np.diff(np.eye(KNOTS), 2, axis=0))
@@ -113,31 +121,33 @@ def fitted(cells, values, first, last, fine, smoothness=1e-3):
     for place, value in ((0, first), (KNOTS - 1, last)):
         if value is not None:
             here = 1e4 * np.eye(KNOTS)[[place]]
-            blocks.append(np.hstack([np.kron(np.eye(SLANTS), each) for each in (here, fine * here @ thick)]))
-            targets.append(np.full(SLANTS, 1e4 * value))
+            for side in sides:
+                both = (here, side * here @ thick)
+                blocks.append(np.hstack([np.kron(np.eye(SLANTS), each) for each in both]))
+                targets.append(np.full(SLANTS, 1e4 * value))
     matrix, target = np.vstack(blocks), np.concatenate(targets)
     solution = np.linalg.lstsq(matrix, target, rcond=None)[0]
     print(f"# off by {np.std(values - (matrix @ solution)[: len(values)]):.4f}")
     size = SLANTS * KNOTS
-    slope = solution[size:].reshape(SLANTS, -1) @ thick.T
-    return solution[:size].reshape(SLANTS, KNOTS) + fine * slope
+    return solution[:size].reshape(SLANTS, KNOTS), solution[size:].reshape(SLANTS, -1)
 
 
 def print_curves():
     """Print the curves."""
     rng = np.random.default_rng(5)
-    cells = np.concatenate(
-        [
-            cells_of_ball(across * (1.0 + 0.1 * rng.random()), rng.random(2) - 0.5)
-            for across, count in BALLS.items()
-            for _ in range(count)
-        ],
-        axis=1,
+    balls = [
+        (across * (1.0 + 0.1 * rng.random()), rng.random(2) - 0.5)
+        for across, count in BALLS.items()
+        for _ in range(count)
+    ]
+    exact, solved = (
+        np.concatenate([cells_of_ball(*ball, kind) for ball in balls], axis=1) for kind in (False, True)
     )
-    asked = (("LEFT", cells[2], None, 0.0, FINE), ("COVERED", cells[3], 0.0, 1.0, FINE))
-    for name, values, first, last, fine in asked:
-        found = fitted(cells, values, first, last, fine)
-        found = np.clip(found, 0.0, 1.0) if name == "COVERED" else found
+    straight, gained = fitted(exact, exact[2], None, 0.0, (FINE,))
+    curves = {"LEFT": straight + FINE * every_knot(gained)}
+    straight, gained = fitted(solved, solved[3], 0.0, 1.0, (0.0, FINE))
+    curves |= {"COVERED": np.clip(straight, 0.0, 1.0), "BENT": gained}
+    for name, found in curves.items():
         text = np.array2string(
             found.round(4) + 0.0, separator=", ", max_line_width=100, formatter={"float": "{:.4f}".format}
         )
@@ -211,9 +221,10 @@ def rough_waves(x, height, seed):
 
 
 def check_rough():
-    """Print stiffness and force of rough balls against covered cells a quarter as large, of the same gap."""
-    print("| rms / approach | cells in the half-width | k, rms, %: covered | whole | F: covered | whole |")
-    print("|---|---|---|---|---|---|")
+    """Print stiffness, force and area of rough balls against covered cells a quarter as large."""
+    head = "| rms / approach | cells in the half-width | k, rms, %: covered | whole "
+    print(head + "| F: covered | whole | area: covered | whole |")
+    print(8 * "|---" + "|")
     approaches = np.linspace(0.8, 1.2, 41)
     for height in (0.003, 0.03, 0.1, 0.3):
         for across in (6, 9, 12):
@@ -224,19 +235,20 @@ def check_rough():
                 means, middles = gap.reshape(n, 4, n, 4).mean(axis=(1, 3)), gap.reshape(n, 4, n, 4)
                 grids = {"fine": (gap, "covered"), "covered": (means, "covered")}
                 grids["whole"] = (middles[:, 1:3, :, 1:3].mean(axis=(1, 3)), "whole")
-                forces = {}
+                forces, areas = {}, {}
                 for name, (heights, cells) in grids.items():
                     space = HalfSpace(heights.shape, 1.0 / across / (len(heights) / n), 1.0, cells=cells)
                     solved, start = [], None
                     for approach in approaches:
                         solved.append(space.solve(heights, approach=approach, start=start, rtol=1e-7))
                         start = solved[-1].pressure
-                    forces[name] = np.array([c.force for c in solved])
+                    forces[name], areas[name] = np.transpose([(c.force, c.area) for c in solved])
                 for name, kept in errors.items():
                     steps = np.diff(forces[name]) / np.diff(forces["fine"]) - 1.0
-                    kept.append([np.mean(steps**2), np.mean((forces[name] / forces["fine"] - 1.0) ** 2)])
+                    off = [steps, *(each[name] / each["fine"] - 1.0 for each in (forces, areas))]
+                    kept.append([np.mean(each**2) for each in off])
             rms = {name: 100.0 * np.sqrt(np.mean(kept, axis=0)) for name, kept in errors.items()}
-            columns = [rms[name][i] for i in (0, 1) for name in ("covered", "whole")]
+            columns = [rms[name][i] for i in range(3) for name in ("covered", "whole")]
             print(f"| {height} | {across} | " + " | ".join(f"{c:.2f}" for c in columns) + " |", flush=True)
 
 

@@ -56,29 +56,50 @@ LEFT = np.array([
 ])  # fmt: skip
 """Gap that is left, over S times the width of a cell and E*: slant after slant."""
 COVERED = np.array([
-    [0.0000, 0.0114, 0.0354, 0.0617, 0.0918, 0.1266, 0.1659, 0.2081, 0.2543, 0.3045, 0.3584, 0.4164,
-  0.4783, 0.5440, 0.6138, 0.6874, 0.7665, 0.8470, 0.9384, 0.9967, 0.9979, 1.0000, 1.0000, 1.0000,
-  0.9997, 0.9999, 0.9999, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000],
- [0.0000, 0.0078, 0.0282, 0.0573, 0.0918, 0.1270, 0.1656, 0.2081, 0.2543, 0.3044, 0.3585, 0.4165,
-  0.4785, 0.5440, 0.6140, 0.6869, 0.7666, 0.8471, 0.9383, 0.9970, 0.9965, 1.0000, 1.0000, 1.0000,
-  0.9997, 1.0000, 0.9999, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000],
- [0.0000, 0.0062, 0.0216, 0.0456, 0.0803, 0.1208, 0.1631, 0.2068, 0.2541, 0.3053, 0.3595, 0.4176,
-  0.4800, 0.5457, 0.6162, 0.6897, 0.7702, 0.8491, 0.9411, 0.9957, 0.9973, 1.0000, 1.0000, 1.0000,
-  0.9996, 0.9999, 0.9999, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000],
- [0.0000, 0.0051, 0.0182, 0.0388, 0.0670, 0.1039, 0.1494, 0.2008, 0.2529, 0.3066, 0.3633, 0.4234,
-  0.4876, 0.5550, 0.6265, 0.7019, 0.7821, 0.8695, 0.9543, 0.9939, 0.9987, 1.0000, 1.0000, 1.0000,
-  0.9997, 0.9999, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000],
- [0.0000, 0.0045, 0.0159, 0.0341, 0.0596, 0.0931, 0.1351, 0.1867, 0.2462, 0.3080, 0.3710, 0.4369,
-  0.5063, 0.5777, 0.6528, 0.7336, 0.8240, 0.9083, 0.9653, 0.9943, 0.9994, 1.0000, 1.0000, 1.0000,
-  0.9998, 0.9999, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000],
- [0.0000, 0.0041, 0.0146, 0.0317, 0.0560, 0.0886, 0.1302, 0.1808, 0.2407, 0.3102, 0.3864, 0.4631,
-  0.5421, 0.6250, 0.7119, 0.7985, 0.8755, 0.9345, 0.9755, 0.9962, 0.9997, 1.0000, 1.0000, 1.0000,
-  0.9999, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000],
- [0.0000, 0.0040, 0.0143, 0.0311, 0.0552, 0.0876, 0.1292, 0.1802, 0.2409, 0.3109, 0.3919, 0.4824,
-  0.5759, 0.6683, 0.7536, 0.8282, 0.8922, 0.9442, 0.9795, 0.9969, 0.9997, 1.0000, 1.0000, 1.0000,
-  0.9999, 0.9999, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000],
+    [0.0000, 0.0061, 0.0293, 0.0558, 0.0867, 0.1228, 0.1620, 0.2059, 0.2535, 0.3052, 0.3606, 0.4201,
+  0.4836, 0.5521, 0.6246, 0.7005, 0.7812, 0.8632, 0.9561, 1.0000, 1.0000, 0.9991, 0.9990, 1.0000,
+  1.0000, 1.0000, 1.0000, 0.9999, 0.9999, 1.0000, 1.0000, 1.0000, 1.0000],
+ [0.0000, 0.0040, 0.0197, 0.0506, 0.0859, 0.1229, 0.1628, 0.2062, 0.2535, 0.3047, 0.3606, 0.4203,
+  0.4840, 0.5523, 0.6249, 0.7000, 0.7808, 0.8631, 0.9550, 1.0000, 1.0000, 0.9997, 0.9990, 1.0000,
+  1.0000, 1.0000, 1.0000, 1.0000, 0.9999, 1.0000, 1.0000, 1.0000, 1.0000],
+ [0.0000, 0.0032, 0.0158, 0.0382, 0.0734, 0.1173, 0.1638, 0.2074, 0.2541, 0.3052, 0.3613, 0.4214,
+  0.4856, 0.5538, 0.6268, 0.7023, 0.7838, 0.8641, 0.9579, 1.0000, 1.0000, 0.9990, 0.9985, 1.0000,
+  1.0000, 1.0000, 1.0000, 0.9999, 0.9999, 1.0000, 1.0000, 1.0000, 1.0000],
+ [0.0000, 0.0023, 0.0122, 0.0310, 0.0600, 0.0989, 0.1479, 0.2001, 0.2532, 0.3082, 0.3657, 0.4268,
+  0.4918, 0.5624, 0.6373, 0.7159, 0.7949, 0.8815, 0.9675, 1.0000, 1.0000, 0.9985, 0.9990, 0.9997,
+  1.0000, 1.0000, 1.0000, 0.9999, 0.9999, 1.0000, 1.0000, 1.0000, 1.0000],
+ [0.0000, 0.0019, 0.0105, 0.0266, 0.0518, 0.0858, 0.1289, 0.1824, 0.2450, 0.3118, 0.3743, 0.4398,
+  0.5087, 0.5846, 0.6642, 0.7502, 0.8373, 0.9188, 0.9729, 0.9990, 1.0000, 0.9990, 0.9995, 0.9999,
+  1.0000, 1.0000, 1.0000, 0.9999, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000],
+ [0.0000, 0.0016, 0.0094, 0.0246, 0.0477, 0.0799, 0.1217, 0.1751, 0.2385, 0.3137, 0.3906, 0.4686,
+  0.5492, 0.6345, 0.7239, 0.8128, 0.8861, 0.9411, 0.9783, 0.9980, 1.0000, 0.9997, 0.9998, 0.9999,
+  1.0000, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000],
+ [0.0000, 0.0015, 0.0092, 0.0238, 0.0467, 0.0788, 0.1207, 0.1735, 0.2366, 0.3109, 0.3954, 0.4910,
+  0.5910, 0.6810, 0.7644, 0.8368, 0.8987, 0.9489, 0.9826, 0.9990, 1.0000, 0.9996, 0.9998, 1.0000,
+  1.0000, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000],
 ])  # fmt: skip
-"""Share of a cell inside the rim, likewise."""
+"""Share of a cell inside a rim of pressures whose squares are straight, likewise."""
+BENT = np.array([
+    [0.0000, 0.0624, 0.0229, -0.0054, -0.0479, -0.1217, -0.1614, 0.0177, -0.0041, 0.0009, -0.0003,
+  0.0002],
+ [0.0000, 0.0743, 0.0183, -0.0038, -0.0497, -0.1223, -0.1509, 0.0183, -0.0037, 0.0012, -0.0004,
+  0.0002],
+ [0.0000, 0.0738, 0.0008, -0.0032, -0.0511, -0.1164, -0.1496, 0.0239, -0.0061, 0.0012, -0.0004,
+  0.0002],
+ [0.0000, 0.0775, 0.0166, -0.0115, -0.0384, -0.1199, -0.1203, 0.0257, -0.0058, 0.0017, -0.0004,
+  0.0002],
+ [0.0000, 0.0705, 0.0603, -0.0280, -0.0203, -0.1487, -0.0705, 0.0133, -0.0037, 0.0008, -0.0002,
+  0.0001],
+ [0.0000, 0.0665, 0.0815, -0.0258, -0.0650, -0.1305, -0.0253, 0.0042, -0.0009, 0.0003, 0.0000,
+  0.0000],
+ [0.0000, 0.0688, 0.0803, 0.0076, -0.1289, -0.0784, -0.0286, 0.0054, -0.0017, 0.0003, -0.0001,
+  0.0000],
+])  # fmt: skip
+"""What it gains where they bend, over the bend, at every third knot."""
+MOST_BENT = 1.0 / 6.0
+"""Bend, at most: that of a ball with six cells in the half-width. Smaller asperities are not resolved."""
+BEND_SHARE, BEND_LEFT = 0.85, 0.006
+"""Bend at a rim over that of three cells inside, and what means over cells add to it: of balls."""
 LEAST_SLOPE = 0.02
 """Slope of a curve, at least, by which the pressure that a residual asks for is estimated."""
 STEEP, MOST_LEFT = 9.0, 3.0
@@ -106,7 +127,13 @@ def cubics(values: NDArray) -> NDArray:
     return np.stack([values[:, :-1], low, 3.0 * step - 2.0 * low - high, low + high - 2.0 * step], axis=2)
 
 
-_LEFT, _COVERED = cubics(LEFT).ravel(), cubics(COVERED).ravel()
+def every_knot(values: NDArray) -> NDArray:
+    """Values (curves, KNOTS) of curves that are known at every third knot, straight between them."""
+    knots = np.arange(KNOTS) / 3.0
+    return np.stack([np.interp(knots, np.arange(len(each)), each) for each in values])
+
+
+_LEFT, _COVERED, _BENT = (cubics(each).ravel() for each in (LEFT, COVERED, every_knot(BENT)))
 
 
 @compiled(**INNER, **UNCHECKED)
@@ -421,6 +448,33 @@ def bend(b: Box, rims: Rims) -> float:
     return stored
 
 
+@compiled(**INNER)
+def _squared_pressure(pressure: NDArray, i: int, j: int) -> float:
+    inside = 0 <= i < pressure.shape[0] and 0 <= j < pressure.shape[1]
+    return pressure[i, j] ** 2 if inside else 0.0
+
+
+@compiled(**INNER)
+def bend_inside(pressure: NDArray, i: int, j: int, x: float, y: float, slant: float) -> float:
+    """Find how much the square of the pressure bends inside a rim, over its slope there, on a cell's width.
+
+    It is h/a of a ball, zero where the square is straight. Cell (i, j) has the differences x and y between
+    its neighbours' pressures, Pa; three cells further inside are looked at.
+    """
+    wide = abs(x) >= abs(y)
+    down = int(np.sign(x)) if wide else 0
+    aside = 0 if wide else int(np.sign(y))
+    first = _squared_pressure(pressure, i + down, j + aside)
+    second = _squared_pressure(pressure, i + 2 * down, j + 2 * aside)
+    third = _squared_pressure(pressure, i + 3 * down, j + 3 * aside)
+    rise = second - first
+    loss = 2.0 * second - first - third
+    slope = (rise + 1.5 * loss) * np.sqrt(1.0 + slant * slant)  # 1.5 cells from there, normal to the rim
+    if rise <= 0.0 or slope <= 0.0:
+        return MOST_BENT
+    return BEND_SHARE * max(min(loss / slope - BEND_LEFT, MOST_BENT / BEND_SHARE), 0.0)
+
+
 @compiled(**LOOP)
 def rim_slopes(pressure: NDArray, along: float, across: float, slopes: NDArray, covered: NDArray) -> None:
     """Find how the gap at rims changes with the pressure, and how much of each cell is covered.
@@ -440,4 +494,7 @@ def rim_slopes(pressure: NDArray, along: float, across: float, slopes: NDArray, 
                 found = _at_rim(p, x, y, 1.0 / along**2, 1.0 / across**2)
                 scale, step, ratio, slant, _left, slope, slopes[1, i, j], slopes[2, i, j] = found
                 slopes[0, i, j] = 0.5 * slope * scale / (step * ratio)
-                covered[i, j] = min(max(between_curves(_COVERED, ratio, slant)[0], 0.0), 1.0)
+                bend = bend_inside(pressure, i, j, x, y, slant)
+                share = between_curves(_COVERED, ratio, slant)[0]
+                share += bend * between_curves(_BENT, ratio, slant)[0]
+                covered[i, j] = min(max(share, 0.0), 1.0)
