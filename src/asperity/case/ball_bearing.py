@@ -222,7 +222,17 @@ class BearingUnderLoad(AnyCase):
     def loaded(self) -> LoadedBearing:
         """The same with its warnings."""
         speed = self.speed if self.centrifugal else 0.0
-        return self.bearing.bearing.loaded(self.radial, self.axial, speed=speed)
+        return self.bearing.bearing.loaded(self.radial, self.axial, speed=speed, **self.held)
+
+    @property
+    def tilts(self) -> dict[str, float]:
+        """Tilts of the inner ring, rad, by the names of their keys, where there are any: balls have none."""
+        return {}
+
+    @property
+    def held(self) -> dict[str, float]:
+        """How the inner ring is held at rest beside its load."""
+        return {}
 
     @property
     def faults(self) -> dict[str, FaultKeys]:

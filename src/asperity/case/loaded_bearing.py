@@ -12,7 +12,7 @@ from asperity.case.bearing_sections import DAMPED, LOAD, LOADS, BearingGeometry
 from asperity.case.body import DAMPING
 from asperity.case.form import Section, section
 from asperity.case.lubricant import LubricantKeys, RollerLubricantKeys
-from asperity.case.roller_bearing import RollerBearingUnderLoad, RollerGeometry
+from asperity.case.roller_bearing import TILT, RollerBearingUnderLoad, RollerGeometry
 from asperity.case.speed import span_of
 from asperity.errors import OutOfRangeWarning
 from asperity.parameters import Origin, Quantity, key, optional
@@ -72,12 +72,7 @@ class BearingKeys(LoadKeys, BearingGeometry):
 class RollerBearingKeys(LoadKeys, RollerGeometry):
     """A roller bearing and what it carries."""
 
-    tilt: float = key(
-        Quantity("rad"),
-        "0 mrad",
-        "tilt of the inner ring in the plane of the radial load",
-        "1e-9 rad to 0.1 rad: shafts tilt less",
-    )
+    tilt: float = TILT
     lubricant: RollerLubricantKeys = section(RollerLubricantKeys, "the oil: how thick its films are")
 
     @property
@@ -111,13 +106,15 @@ def _of_case(keys: dict[str, Any], source: str, options: Mapping[str, Any]) -> d
         )
     carried = {name: f"{float(getattr(case, name))!r} {unit}" for name, unit in CARRIED.items()}
     carried["contact_damping"] = f"{0.5 * sum(case.dampings)!r} N s/m"
+    carried |= {name: f"{value!r} rad" for name, value in case.held.items()}
     return dict(keys.get("bearing", {})) | carried | {"lubricant": keys.get("lubricant", {})}
 
 
 def bearing_of_run(text: str, source: str) -> LoadKeys:
     """Bearing, load and speed of a run by the text of its case, whose files need no longer be there."""
     keys = toml.read_toml(text, "case", source)
-    own = {name: keys[name] for name in ("kind", "bearing", "lubricant", *CARRIED) if name in keys}
+    names = "kind", "bearing", "lubricant", "tilt", "rotating_tilt", *CARRIED
+    own = {name: keys[name] for name in names if name in keys}
     return _read(_of_case(own, source, {}), source)
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
 
 from asperity.case.any_case import LAW
@@ -16,15 +18,21 @@ from asperity.case.sections import DURATION
 from asperity.case.speed import span_of
 from asperity.errors import InputError
 from asperity.laws import LawSpec, Need, spec_of
-from asperity.parameters import Choice, Flag, ListOf, key, keys_of, optional
+from asperity.parameters import Choice, Flag, ListOf, Quantity, key, keys_of, optional
 from asperity.rolling.resolution import steps_per_resonance
-from asperity.structures.roller_bearing import ROLLER_BEARINGS, RollerBearing
+from asperity.structures.roller_bearing import ROLLER_BEARINGS, STEEPEST_TILT, RollerBearing
 from asperity.written_numbers import rounded
 
 if TYPE_CHECKING:
     from asperity.contact.slices import SlicedContact
     from asperity.structures.roller_statics import LoadedRollers
 
+TILT = key(
+    Quantity("rad"),
+    "0 mrad",
+    "tilt of the inner ring in the plane of the radial load",
+    "-0.1 rad to 0.1 rad: shafts tilt less",
+)
 DIMENSIONS = keys_of(RollerBearing, otherwise="that of the named bearing")
 NEEDED = ("rollers", "roller_diameter", "roller_length", "pitch_diameter")
 BY_SLICES = "areal"
@@ -95,6 +103,10 @@ class RollerBearingUnderLoad(BearingUnderLoad):
     }  # fmt: skip
 
     kind: str = key(Choice(("roller-bearing",)), "roller-bearing", "what rolls")
+    tilt: float = TILT
+    rotating_tilt: float = replace(
+        TILT, meaning="tilt that turns with the ring that turns, as of a bent shaft"
+    )
     laws: tuple[str, ...] = key(
         ListOf(LAW, least=1, once=True),
         [BY_SLICES],
@@ -130,6 +142,17 @@ class RollerBearingUnderLoad(BearingUnderLoad):
         def contacts(self) -> tuple[tuple[SlicedContact, float], tuple[SlicedContact, float]]:  # type: ignore[override]
             """Smooth contacts of a roller with the inner and the outer ring, and their largest loads, N."""
 
+    @property
+    def tilts(self) -> dict[str, float]:
+        """Tilts of the inner ring, rad, by the names of their keys, where there are any."""
+        found = {"tilt": self.tilt, "rotating_tilt": self.rotating_tilt}
+        return found if any(found.values()) else {}
+
+    @property
+    def held(self) -> dict[str, float]:
+        """How far the inner ring is tilted at most: where one that turns adds to one that stands."""
+        return {"tilt": math.copysign(abs(self.tilt) + abs(self.rotating_tilt), self.tilt)}
+
     def resolving(self, resonance: float) -> float:
         """Time steps in a second, 1/s, that a resonance of contacts, Hz, takes: fewer beyond the record."""
         return steps_per_resonance(resonance, self.highest_frequency) * resonance
@@ -161,5 +184,10 @@ class RollerBearingUnderLoad(BearingUnderLoad):
             remedy = "Rollers slide along such raceways, and ribs are not in it. Give a contact_angle."
             allowed = "0 N where bearing.contact_angle is 0"
             yield InputError("axial", f"{rounded(self.axial, 4)} N", allowed, remedy)
+            return
+        if abs(self.held["tilt"]) >= STEEPEST_TILT:
+            key = "tilt" if abs(self.tilt) >= abs(self.rotating_tilt) else "rotating_tilt"
+            allowed = f"below {STEEPEST_TILT:g} rad, tilt and rotating_tilt together"
+            yield InputError(key, f"{rounded(self.held['tilt'], 4)} rad", allowed, "Is the unit right?")
             return
         yield from super().problems()

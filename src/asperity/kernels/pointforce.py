@@ -1,15 +1,16 @@
-"""The moving point force, compiled: three forms that cover all laws made of state functions."""
+"""The moving point force, compiled: forms that cover all laws made of state functions."""
 
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.kernels.options import INNER, compiled
+from asperity.kernels.options import INNER, ONCE, compiled
 
 SHIFTED = 0  # F = f(approach - h)
 SECANT = 1  # F = f(approach)/r (r - h), r = approach + datum: Eq. 2.1 as printed
 TABLE = 2  # F = g(approach)^1.5, g interpolated at every position
+SLICED = 3  # F = Σ c (approach - h + tilt × place - drop)^n over the slices of a roller
 ITERATIONS = 100
 FILM_TOLERANCE = 1e-12
 """Of the approach of bodies with a film, over its thickness."""
@@ -29,7 +30,7 @@ DRY = SeriesFilm(0.0, 1.0, 0.0)
 class Prepared(NamedTuple):
     """A law laid out on the n positions of a path, for the compiled kernels."""
 
-    form: int  # `SHIFTED`, `SECANT` or `TABLE`
+    form: int  # `SHIFTED`, `SECANT`, `TABLE` or `SLICED`
     # (n,), at every position the plane from which approaches count here, m, positive away from contact
     planes: NDArray
     states: NDArray  # (s,), approaches of the states, m
@@ -37,8 +38,11 @@ class Prepared(NamedTuple):
     # N^(2/3)
     values: NDArray
     slopes: NDArray  # (n, s), for `TABLE` the slope of g, N^(2/3)/m; else an array without rows
-    touches: NDArray  # (n,), for `TABLE` the approach at first touch, m; else an array without rows
-    knots: NDArray  # this and the next three: the force curve, `reduction.stiffness.ForceCurve`
+    # (n,), for `TABLE` the approach at first touch, m, for `SLICED` the tilt, rad; else an array without rows
+    touches: NDArray
+    # this and the next three: the force curve, `reduction.stiffness.ForceCurve`; for `SLICED` the places of
+    # the slices (k,), m, and their drops, m, and constants c (k, 2)
+    knots: NDArray
     coefficients: NDArray
     exponent: float
     bilateral: bool
@@ -135,6 +139,20 @@ def table_root(states, values, slopes, step, touch, approach):  # type: ignore[n
     return g, slope
 
 
+@compiled(**ONCE)
+def sliced_force(places, parts, exponent, tilt, approach):  # type: ignore[no-untyped-def]
+    """Force and slope of all slices at an approach of their middle, tilted: end at positive places nearer."""
+    force = 0.0
+    slope = 0.0
+    for i in range(places.shape[0]):
+        overlap = approach + tilt * places[i] - parts[i, 0]
+        if overlap > 0.0:
+            root = parts[i, 1] * overlap ** (exponent - 1.0)
+            force += root * overlap
+            slope += root
+    return force, exponent * slope
+
+
 @compiled(**INNER)
 def evaluate(law, step, approach):  # type: ignore[no-untyped-def]
     """Elastic force of a law at a position, N, and its derivative, N/m, by the approach of its bodies, m."""
@@ -146,6 +164,11 @@ def evaluate(law, step, approach):  # type: ignore[no-untyped-def]
     if law.form == SHIFTED:
         force, slope = curve_force(
             law.knots, law.coefficients, law.exponent, law.bilateral, approach - height
+        )
+        return force, slope * (1.0 - height_slope)
+    if law.form == SLICED:
+        force, slope = sliced_force(
+            law.knots, law.coefficients, law.exponent, law.touches[step], approach - height
         )
         return force, slope * (1.0 - height_slope)
     r = approach + law.datum
@@ -237,7 +260,7 @@ def evaluate_all(law, approach, first):  # type: ignore[no-untyped-def]
         force[i], stiffness = evaluate(law, step, bodies)
         slope[i] = stiffness / (1.0 - film_under(law.film, force[i])[1] * stiffness)
         argument = bodies - law.planes[step]
-        if law.form == SHIFTED:
+        if law.form == SHIFTED or law.form == SLICED:
             argument -= texture_at(law.states, law.values, step, argument)[0]
         beyond += argument > law.upper
     return force, slope, beyond

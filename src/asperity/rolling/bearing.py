@@ -129,6 +129,8 @@ def roll_bearing(
     ball_heights: Sequence[ArrayLike] = (),
     slip: Callable[[Array], Array] | None = None,
     centrifugal: bool = True,
+    tilt: float = 0.0,
+    rotating_tilt: float = 0.0,
     sensors: Sequence[Sensor] = (),
     highest_frequency: float | None = None,
     progress: Progress | None = None,
@@ -167,6 +169,11 @@ def roll_bearing(
         Share by which the cage is slower at times (n,), s, than in pure rolling.
     centrifugal : bool
         Whether balls press outwards as they run around.
+    tilt, rotating_tilt : float
+        Of the inner ring against the outer one, rad, as of `RollerBearing.loaded`: in the plane of the radial
+        load; and one that turns with the ring that turns, in that plane at time zero. With either the laws
+        are `asperity.laws.tilted.Tilted`, and a roller lies in the middle between the rings, which is where
+        moments of two contacts alike are in balance.
     sensors : sequence of (ring, angle, direction)
         As ``("outer", 0.0, "radial")``, whose acceleration is recorded; of a ring that turns rigid motion.
     highest_frequency : float, optional
@@ -181,7 +188,7 @@ def roll_bearing(
     arches = isinstance(bearing, BallBearing) and bool(bearing.arches)
     require(not arches, "grooves", "of two arcs", "of one arc: a ball rolls on one contact with each ring")
     total = round(settling / time_step) + round(duration / time_step)
-    turning = _Turning(bearing, rings, speed, time_step, settling, total, slip)
+    turning = _Turning(bearing, rings, speed, time_step, settling, total, slip, (tilt, rotating_tilt))
     mechanism = turning.mechanism((inner_law, outer_law), ball_heights, centrifugal=centrifugal)
     loads = radial, axial + bearing.preload
     mechanism = turning.loaded(mechanism, loads)
@@ -238,6 +245,7 @@ class _Turning:
     settling: float
     total: int
     slip: Callable[[Array], Array] | None
+    tilts: tuple[float, float] = (0.0, 0.0)
 
     def __post_init__(self) -> None:
         positive("speed (1/s)", self.speed)
@@ -304,10 +312,17 @@ class _Turning:
         """Angle of the spot of a ball that touches a ring; the spots are opposite."""
         return lambda steps: self._spin * self._time(steps) + (0.0 if ring else math.pi)
 
-    def on_both(self, ball: int, ring: int) -> Values:
-        """The same beside the angle of the spot that touches (n, 2)."""
-        both = self.on_raceway(ball, ring), self.spot(ring)
+    def beside(self, ball: int, ring: int, other: Values) -> Values:
+        """The same beside what else a law is laid out on (n, 2)."""
+        both = self.on_raceway(ball, ring), other
         return lambda steps: np.column_stack([each(steps) for each in both])
+
+    def tilted(self, ball: int, factor: float) -> Values:
+        """Tilt of the inner ring in the plane of a ball, rad, times a factor."""
+        standing, turning = self.tilts
+        still = self.azimuth(ball).places
+        along = self.azimuth(ball, RINGS.index(self.bearing.turning)).places
+        return lambda steps: factor * (standing * np.cos(still(steps)) + turning * np.cos(along(steps)))
 
     def usual_load(self, radial: float, axial: float) -> float:
         """Contact force by which tolerances are measured, N: that of the ball that carries most, about."""
@@ -332,6 +347,7 @@ class _Turning:
         allowed = f"{of.balls}, one line for each ball, or none"
         require(len(ball_heights) in (0, of.balls), "heights of the balls", len(ball_heights), allowed)
         none = np.zeros((1, 1))
+        arm = 0.5 * of.pitch_diameter * math.sin(self.contact_angle)
         outwards = self.centrifugal_force if centrifugal else 0.0
         easing = self._beside_fastest(outwards / SHORT) if centrifugal else None
         rows = np.array([[1.0], [-1.0]] if easing is None else [[1.0], [-1.0], [SHORT]])
@@ -349,7 +365,10 @@ class _Turning:
                 along = self.on_raceway(j, ring)
                 if isinstance(law, Sequence):
                     law = law[j]
-                    along = self.on_both(j, ring)
+                    along = self.beside(j, ring, self.spot(ring))
+                elif any(self.tilts):  # half of it on either side, where the end along the axis opens
+                    along = self.beside(j, ring, self.tilted(j, -0.5))
+                    heights = heights if ring else _sum(heights, self.tilted(j, arm))
                 contacts.append(RollingContact(law, along, tuple(sides), heights))
             if easing is not None:
                 spring = Linear(outwards / SHORT, SOFT)
@@ -416,6 +435,11 @@ def _heights(line: ArrayLike | None, spots: Values, raised: float) -> Values:
     angles = TURN * np.arange(heights.size + 1) / heights.size
     spline = CubicSpline(angles, np.append(heights, heights[0]), bc_type="periodic")
     return lambda steps: spline(spots(steps)) + raised
+
+
+def _sum(first: Values, second: Values) -> Values:
+    """Both together."""
+    return lambda steps: first(steps) + second(steps)
 
 
 def _row_of(mechanism: Mechanism, rings: BearingRings, bearing: AnyBearing, sensor: Sensor) -> Array:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from asperity.arguments import Array, NDArray
-from asperity.kernels.pointforce import SHIFTED, Prepared, evaluate_all
+from asperity.kernels.pointforce import SHIFTED, SLICED, Prepared, evaluate_all
 from asperity.laws.spec import SteppedLaw, settles
 from asperity.rolling.mechanism import Mechanism, RollingContact
 from asperity.rolling.steps import padded
@@ -172,7 +172,7 @@ def in_contact(law: Prepared | SteppedLaw, first: int, force: Array, approach: A
 
 def steps_beyond(law: Prepared, first: int, approach: Array) -> int:
     """Number of steps from one of a piece on at which its law is beyond its data, at approaches (n,), m."""
-    lowest = float(law.values.min()) if law.form == SHIFTED else 0.0
+    lowest = float(law.values.min()) if law.form in (SHIFTED, SLICED) else 0.0
     if approach.max() <= float(law.planes.min()) + law.upper + lowest - law.film.thickness:  # as mostly
         return 0
     return int(evaluate_all(law, approach, first)[2])

@@ -15,6 +15,7 @@ from asperity.case.ball_bearing import BearingUnderLoad
 from asperity.errors import PhysicsWarning
 from asperity.laws import Need, spec_of
 from asperity.laws.film import WithFilm
+from asperity.laws.tilted import Tilted
 from asperity.progress import Progress
 from asperity.rolling.bearing import (
     BearingRings,
@@ -99,13 +100,13 @@ def compute_bearing(prepared: PreparedBearing, progress: Progress) -> ComputedBe
             duration=max(share * case.duration, case.step), time_step=case.step,
             settling=case.settling, slip=cage_slip(case),
             ball_heights=[] if isinstance(inner, list) else averaged,
-            centrifugal=case.centrifugal, sensors=sensors,
+            centrifugal=case.centrifugal, sensors=sensors, **case.tilts,
             highest_frequency=case.highest_frequency, progress=progress,
             checkpoint=checkpoint_of(law, case, surfaces, Store()),
         )  # fmt: skip
 
     def looking_up(law: str, scanned: Sequence[ScannedRaceway], share: float) -> RolledBearing:
-        inner, outer = oiled(case, [each.raceway.build(law, each.states) for each in scanned])
+        inner, outer = laid(case, [each.raceway.build(law, each.states) for each in scanned])
         return once(law, inner, outer, share)
 
     loads = case.static.inner_load, case.static.outer_load
@@ -120,7 +121,7 @@ def compute_bearing(prepared: PreparedBearing, progress: Progress) -> ComputedBe
         if name in looked_up:
             run, scanned = within_scan(partial(looking_up, name), scanned, _visited, TRIED)
         else:
-            inner, outer = oiled(case, [of[name] for of in laws_of])
+            inner, outer = laid(case, [of[name] for of in laws_of])
             run = once(name, inner, outer)
         every = case.steps_per_sample
         signals: dict[str, Any] = {each: thinned(getattr(run, each), every) for each in SIGNALS}
@@ -169,12 +170,16 @@ def _visited(run: RolledBearing) -> list[tuple[float, float]]:
     return [((1.0 - DAMPED) * least, (1.0 + DAMPED) * most) for least, most in run.reached]
 
 
-def oiled(case: BearingUnderLoad, dry: Sequence[Any]) -> Sequence[Any]:
-    """Laws of the contacts with the inner and the outer ring with their films, if there is oil."""
+def laid(case: BearingUnderLoad, level: Sequence[Any]) -> Sequence[Any]:
+    """Laws of the contacts with the inner and the outer ring: tilted with the ring, with films of oil."""
+    laws = list(level)
+    contacts: Any = case.contacts
+    if case.tilts:
+        laws = [Tilted(law, smooth) for law, (smooth, _) in zip(laws, contacts, strict=True)]
     if case.films is None:
-        return dry
-    loads = (load for _, load in case.contacts)
-    return [WithFilm(law, film, load) for law, film, load in zip(dry, case.films, loads, strict=True)]
+        return laws
+    each = zip(laws, case.films, contacts, strict=True)
+    return [WithFilm(law, film, load) for law, film, (_, load) in each]
 
 
 def bearing_rings(case: BearingUnderLoad) -> BearingRings:

@@ -32,6 +32,8 @@ PRINTED: dict[str, str] = {
 """What of them is printed, and what is chosen."""
 CLEARANCE = 20e-6
 """Diametral clearance of the named bearings, m, chosen here."""
+STEEPEST_TILT = 0.1
+"""Of a ring, rad, below which it is."""
 STEEL = MATERIALS["steel"]
 _LENGTH = Quantity("m", above=0)
 _GAP = "-1 mm to 10 mm: bearings lie between"
@@ -95,14 +97,15 @@ class RollerBearing:
     ELEMENT: ClassVar = "roller"
     """What rolls in it."""
     LEFT_OUT: ClassVar = (
-        "There is no film of lubricant, no friction, no rib, and no tilt of a ring while it turns; slices of "
-        "a roller do not know of each other, nor of sharp ends."
+        "There is no film of lubricant, no friction, and no rib; while it turns rings are held at their "
+        "tilt, rollers at half of it; slices of a roller do not know of each other, nor of sharp ends."
     )
     """What no computation of it has."""
     LEFT_OUT_OILED: ClassVar = (
-        "Contacts are full of oil; there is no friction, no rib, and no tilt of a ring while it turns; "
-        "slices of a roller do not know of each other, nor of sharp ends; static loads are those without "
-        "oil, and all contacts with a ring have one damping, that under its heaviest load."
+        "Contacts are full of oil; there is no friction, and no rib; while it turns rings are held at their "
+        "tilt, rollers at half of it; slices of a roller do not know of each other, nor of sharp ends; "
+        "static loads are those without oil, and all contacts with a ring have one damping, that under its "
+        "heaviest load."
     )
     """What none with oil has."""
     SOURCE: ClassVar = "ISO/TS 16281:2008 (load and stiffness of rollers by slices)."

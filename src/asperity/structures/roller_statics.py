@@ -13,7 +13,7 @@ from asperity.contact.slices import EXPONENT, SlicedContact
 from asperity.errors import ComputationError, Grade, InputError, OutOfRangeWarning, percent
 from asperity.structures.bearing_statics import STEPS, angles_of_cage, speed_of_leaving
 from asperity.structures.least_energy import TOLERANCE, least_energy
-from asperity.structures.roller_bearing import RollerBearing
+from asperity.structures.roller_bearing import STEEPEST_TILT, RollerBearing
 from asperity.written_numbers import rounded
 
 STATIC_PRESSURE = 4.0e9
@@ -187,7 +187,7 @@ def roller_load_distribution(
     speed = not_negative("speed (1/s)", speed)
     both = tilt is not None and moment is not None
     require(not both, "load", "both tilt and moment", "one of them", "Remove one.")
-    tilted = _both_planes("tilt (rad)", tilt, largest=0.1)
+    tilted = _both_planes("tilt (rad)", tilt, largest=STEEPEST_TILT)
     moments = _both_planes("moment (N m)", moment)
     carried = bearing.contact_angle > 0.0 or axial == 0.0
     allowed = "0 N where contact_angle is 0: such rollers slide axially"

@@ -1,0 +1,59 @@
+"""A law of rollers that lie at a tilt to their raceway, which goes along with them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from asperity.arguments import require
+from asperity.contact.slices import EXPONENT, SlicedContact
+from asperity.kernels import pointforce
+from asperity.laws import spec
+
+
+@dataclass(frozen=True, eq=False)
+class Tilted:
+    """A law whose force is that of all slices of a tilted roller, on the texture that the law follows.
+
+    F = Σ c (approach − h + tilt · xₖ − P(xₖ))^(10/9) over the slices at xₖ, where their sum is positive; h,
+    planes and damping are those of the law.
+
+    Parameters
+    ----------
+    law : Law
+        A force curve that follows a texture, as `areal`.
+    contact : SlicedContact
+        Of the roller and its raceway.
+    """
+
+    law: spec.Law
+    contact: SlicedContact
+
+    @property
+    def name(self) -> str:
+        """Name of the law."""
+        return self.law.name
+
+    @property
+    def damping(self) -> float:
+        """Contact damping, N s/m."""
+        return self.law.damping
+
+    def prepare(self, positions: spec.ArrayLike) -> spec.Prepared:
+        """Lay the law out on (n, 2): positions, m, and angles by which the far end comes nearer, rad."""
+        at = np.asarray(positions, dtype=float)
+        level = self.law.prepare(np.ascontiguousarray(at[:, 0]))
+        follows = isinstance(level, pointforce.Prepared) and level.form == pointforce.SHIFTED
+        allowed = "a force curve that follows a texture, as areal"
+        require(follows, "law of a tilted roller", self.name, allowed)
+        assert isinstance(level, pointforce.Prepared)
+        of = self.contact
+        constants = np.full(of.slices, of.stiffness_constant / of.slices)
+        return level._replace(
+            form=pointforce.SLICED,
+            touches=np.ascontiguousarray(at[:, 1]),
+            knots=of.places,
+            coefficients=np.column_stack([of.drops, constants]),
+            exponent=EXPONENT,
+        )

@@ -1,0 +1,210 @@
+"""Rollers between rings that are tilted while they turn: statics, energy, tones, films, refusals."""
+
+import numpy as np
+import pytest
+
+from asperity import RollerBearing
+from asperity.case.cases import as_case
+from asperity.errors import CaseError, InputError
+from asperity.kernels.pointforce import evaluate_all
+from asperity.laws import Areal, HertzLaw, Linear
+from asperity.laws.film import WithFilm
+from asperity.laws.tilted import Tilted
+from asperity.reduction.stiffness import ForceCurve
+from asperity.reduction.texture import StateTexture
+from asperity.rolling.bearing import BearingRings, roll_bearing
+from asperity.scenarios.prepared_bearing import expected, prepare_bearing
+from asperity.structures.ring import Ring
+from refusals import refusals
+
+ROLLERS = {"rollers": 7, "roller_diameter": 8e-3, "roller_length": 8e-3, "clearance": 4e-6}
+CYLINDRICAL = RollerBearing(pitch_diameter=40e-3, **ROLLERS)
+TAPERED = RollerBearing(pitch_diameter=40e-3 * np.cos(0.3), contact_angle=0.3, **ROLLERS)
+"""Of both the cage turns 0.4 times as fast as the inner ring, so that all comes again after five turns."""
+TURNS, SPEED, STEP = 5, 200.0, 2e-6
+LOADS = {CYLINDRICAL: (1000.0, 0.0), TAPERED: (1000.0, 600.0)}
+
+
+def law_of(contact, damping=20.0, texture=None):
+    """The force curve of level slices, on a texture."""
+    at = contact.approach(6000.0) * np.geomspace(1e-3, 1.0, 60)
+    found = contact.pressed(at)
+    curve = ForceCurve.from_samples(at, found.force, 10 / 9, found.stiffness[:, 0, 0])
+    return Areal(curve, texture, damping)
+
+
+def rolled(bearing, damping=60.0, **others):
+    angle = bearing.contact_angle
+    laws = [Tilted(law_of(each, damping), each) for each in (bearing.inner_contact, bearing.outer_contact)]
+    held = {"radial_stiffness": 1e8, "axial_stiffness": 1e8, "damping_ratio": 0.3}
+    rings = BearingRings(Ring.rigid(0.5, angle), Ring.rigid(0.3, angle, **held))
+    radial, axial = LOADS[bearing]
+    times = {
+        "speed": SPEED,
+        "duration": TURNS / SPEED,
+        "settling": 0.03,
+        "time_step": STEP,
+        "highest_frequency": 2e4,
+    }
+    given = {"radial": radial, "axial": axial, "centrifugal": False} | times | others
+    return roll_bearing(bearing, rings, *laws, **given)
+
+
+@pytest.mark.parametrize("bearing", [CYLINDRICAL, TAPERED])
+@pytest.mark.parametrize("way", ["tilt", "rotating_tilt"])
+def test_slow_tilted_rings_stand_as_in_the_static_solution(bearing, way):
+    """Independent of it: the energy of all slices, least over five coordinates and each roller's tilt."""
+    start = {"speed": 1e-3, "duration": 2e-6, "settling": 0.0, "time_step": 1e-6}
+    run = rolled(bearing, 0.0, **start, **{way: 1.2e-3})
+    still = bearing.loaded(*LOADS[bearing], tilt=1.2e-3, cage_angles=run.cage[:1])
+    most = still.inner_load.max()
+    assert np.abs(run.inner_force[:, 0] - still.inner_load[0]).max() < 1e-9 * most
+    assert np.abs(run.outer_force[:, 0] - still.outer_load[0]).max() < 1e-9 * most
+    moved = run.inner_motion[:, 0] - run.outer_motion[:, 0]
+    assert np.abs(moved - still.displacement[0, :3]).max() < 1e-9 * np.abs(moved).max()
+    level = bearing.loaded(*LOADS[bearing], cage_angles=run.cage[:1])
+    assert np.abs(level.displacement[0] - still.displacement[0])[:3].max() > 0.01 * np.abs(moved).max()
+    back = rolled(bearing, 0.0, **start, **{way: -1.2e-3})
+    assert np.abs(back.inner_force - run.inner_force)[:, 0].max() < 1e-9 * most
+    moved_back = back.inner_motion[:, 0] - back.outer_motion[:, 0]
+    arm = 0.5 * bearing.pitch_diameter * np.tan(bearing.contact_angle)
+    assert moved_back[0] - moved[0] == pytest.approx(2.0 * 1.2e-3 * arm, rel=1e-9, abs=1e-15)
+
+
+def test_at_a_high_speed_half_of_the_tilt_is_near_what_moments_leave():
+    """At 18 000 1/min a roller presses outwards with 30 N: the outer contact, which carries more, holds it."""
+    fast = {"speed": 300.0, "duration": 2e-6, "settling": 0.0, "time_step": 1e-6, "centrifugal": True}
+    run = rolled(CYLINDRICAL, 0.0, tilt=1.5e-3, **fast)
+    still = CYLINDRICAL.loaded(1000.0, tilt=1.5e-3, speed=300.0, cage_angles=run.cage[:1])
+    for force, load in ((run.inner_force, still.inner_load), (run.outer_force, still.outer_load)):
+        assert np.abs(force[:, 0] - load[0]).max() < 5e-3 * load.max()
+
+
+def lines(run):
+    """Amplitudes (directions, k) of the inner ring's motion at whole multiples of a fifth of its turns, m."""
+    first = run.inner_motion[:, :-1]
+    return np.abs(np.fft.rfft(first, axis=1)) / first.shape[1]
+
+
+def at(*orders):
+    """Places of orders of the inner ring's turns among `lines`."""
+    return [round(TURNS * each) for each in orders]
+
+
+@pytest.mark.parametrize("bearing", [CYLINDRICAL, TAPERED])
+def test_a_tilt_that_stands_makes_tones_of_rollers_that_pass_alone(bearing):
+    """Everything comes again as the next roller comes: Z f_c, 2.8 times the turns, and its multiples."""
+    run = rolled(bearing, tilt=1.5e-3)
+    found = lines(run)[0]
+    passing = at(2.8, 5.6, 8.4)
+    others = np.setdiff1d(np.arange(1, 50), passing)
+    assert found[passing[0]] > 1e-9
+    assert found[others].max() < 1e-2 * found[passing[0]]
+    level = lines(rolled(bearing, tilt=1e-12))[0]
+    assert abs(found[passing[0]] / level[passing[0]] - 1.0) > 0.02
+    assert run.energy.residual < 1e-6
+    assert run.unconverged_steps == 0
+
+
+def test_a_tilt_that_turns_is_heard_at_twice_the_turns_of_level_raceways_and_at_once_of_tapered_ones():
+    """Rollers of even crowning carry alike tilted either way; raceways at an angle come nearer, too."""
+    even = lines(rolled(CYLINDRICAL, rotating_tilt=1.5e-3))[0]
+    tapered = lines(rolled(TAPERED, rotating_tilt=1.5e-3))
+    once, twice = at(1.0, 2.0)
+    assert even[twice] > 2e-8
+    assert even[once] < 1e-3 * even[twice]
+    assert tapered[0, once] > 10.0 * even[twice]
+    assert tapered[2, twice] > 1e-8
+    both = lines(rolled(CYLINDRICAL, tilt=1.5e-3, rotating_tilt=0.5e-3))[0]
+    assert both[once] > 2e-8  # 2 t r cos(φ) of (t + r cos φ)²
+
+
+def test_the_energy_of_a_turning_tilt_is_balanced():
+    run = rolled(TAPERED, tilt=0.5e-3, rotating_tilt=1e-3)
+    assert run.energy.residual < 1e-6
+    assert run.unconverged_steps == 0
+
+
+def test_the_force_is_that_of_the_slices_on_the_texture_of_the_law():
+    contact = CYLINDRICAL.inner_contact
+    along = np.arange(200) * 1e-4
+    texture = StateTexture.unfiltered(-1e-6 * np.cos(along / 1e-3), 1e-4, 0.0)
+    law = Tilted(law_of(contact, 3.0, texture), contact)
+    assert (law.name, law.damping) == ("areal", 3.0)
+    places, tilts = along[20:180:20], np.linspace(-2e-3, 2e-3, 8)
+    laid = law.prepare(np.column_stack([places, tilts]))
+    force, stiffness, _ = evaluate_all(laid, np.full(8, 5e-6), 0)
+    expected_at = contact.pressed(5e-6 - texture.at(places)[:, 0], tilts)
+    np.testing.assert_allclose(force, expected_at.force, rtol=1e-12)
+    np.testing.assert_allclose(stiffness, expected_at.stiffness[:, 0, 0], rtol=1e-9)
+
+
+def test_a_film_keeps_tilted_rollers_apart():
+    """Under the force it has, δ = δ_dry(F) − h(F)."""
+    case = as_case(CASE | {"tilt": "1 mrad", "lubricant": {"oil": "ISO VG 68"}})
+    (film, _), ((contact, load), _) = case.films, case.contacts
+    law = WithFilm(Tilted(law_of(contact), contact), film, load)
+    laid = law.prepare(np.column_stack([np.zeros(3), [0.0, 5e-4, 1e-3]]))
+    force, _, _ = evaluate_all(laid, np.full(3, contact.approach(load)), 0)
+    for each, tilt in zip(force, (0.0, 5e-4, 1e-3), strict=True):
+        thick = film.central(load) * (each / load) ** film.formula.central.load
+        assert contact.approach(each, tilt) - thick == pytest.approx(contact.approach(load), rel=1e-9)
+
+
+def test_only_a_law_that_follows_a_texture_is_tilted():
+    contact = CYLINDRICAL.inner_contact
+    law = Tilted(HertzLaw(1e10), contact)
+    assert law.prepare(np.zeros((2, 2))).form == 3
+    printed = Tilted(_Table(), contact)
+    with pytest.raises(InputError, match=r"law of a tilted roller: received table.*as areal"):
+        printed.prepare(np.zeros((2, 2)))
+
+
+class _Table:
+    """A law that looks forces up."""
+
+    name, damping = "table", 0.0
+
+    def prepare(self, positions):
+        return Linear(1.0, 1.0).prepare(positions)._replace(form=2)
+
+
+# --- as a case
+
+CASE = {
+    "kind": "roller-bearing",
+    "radial": "2 kN",
+    "speed": "6000 1/min",
+    "duration": "20 ms",
+    "settling": "2 ms",
+    "bearing": {"name": "NU205"},
+    "outer_raceway": {"waviness": "0.1 um"},
+}
+
+
+TILTED = {"tilt": "-1 mrad", "rotating_tilt": "0.2 mrad"}
+
+
+def test_a_case_tells_tilt_moment_and_time():
+    level, tilted = (as_case(CASE | each) for each in ({}, TILTED))
+    assert tilted.static.displacement[0, 3] == pytest.approx(-1.2e-3)
+    moment = tilted.static.moment[:, 0].mean()
+    assert moment < 0.0
+    rows, work = expected(prepare_bearing(tilted))
+    told = dict(rows)["tilt of the inner ring"]
+    assert told == f"-1 mrad and 0.2 mrad that turns; {moment:.3g} N m hold it in the plane of the load"
+    level_rows, level_work = expected(prepare_bearing(level))
+    assert "tilt of the inner ring" not in dict(level_rows)
+    beyond, level_beyond = (of.time.parts["each part alone"] for of in (work, level_work))
+    assert beyond == pytest.approx(2.4 * level_beyond)
+
+
+test_tilts_that_cannot_be_are_refused = refusals(
+    ({"tilt": "0.2"}, 'tilt: received .0.2.; allowed: an angle, with its unit, as "30 deg"'),
+    ({"tilt": "0.2 rad"}, "tilt: received 0.2 rad; allowed: -0.1 rad to 0.1 rad. Shafts tilt less"),
+    ({"tilt": "20 mrad", "rotating_tilt": "90 mrad"}, "rotating_tilt: received 0.11 rad; allowed: below 0.1"),
+    ({"tilt": "1 mm"}, "tilt: received '1 mm'"),
+    ({"tilt": "60 mrad"}, "radial: received half a width of .*Lower the load or the tilt"),
+    of=lambda changes: as_case(CASE | changes),
+    error=CaseError,
+)
