@@ -72,7 +72,7 @@ def test_slow_tilted_rings_stand_as_in_the_static_solution(bearing, way):
 
 
 def test_at_a_high_speed_half_of_the_tilt_is_near_what_moments_leave():
-    """At 18 000 1/min a roller presses outwards with 30 N: the outer contact, which carries more, holds it."""
+    """At 18 000 1/min a roller presses outwards with 30 N: the outer contact holds it more."""
     fast = {"speed": 300.0, "duration": 2e-6, "settling": 0.0, "time_step": 1e-6, "centrifugal": True}
     run = rolled(CYLINDRICAL, 0.0, tilt=1.5e-3, **fast)
     still = CYLINDRICAL.loaded(1000.0, tilt=1.5e-3, speed=300.0, cage_angles=run.cage[:1])
