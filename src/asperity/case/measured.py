@@ -90,7 +90,7 @@ def read_mobility(
     A table of frequency and magnitude, or real and imaginary part, e^{+iωt}; the unit in a file says whether
     it holds mobility, accelerance or receptance.
     """
-    rows, unit = _in_some_unit(table, _FREQUENCY, ("magnitude or real part", "imaginary part"), FORMS)
+    rows, unit = in_some_unit(table, FORMS, (_FREQUENCY,), ("magnitude or real part",), ("imaginary part",))
     frequency = rows[:, 0]
     refuse_disorder(table, frequency)
     whole = rows.shape[1] == 3  # with its phase
@@ -112,7 +112,7 @@ def read_band_levels(table: TableSource) -> tuple[Array, Array]:
 
     Without weighting; a file says by the unit dB(A) that its levels are A-weighted.
     """
-    rows, unit = _in_some_unit(table, _FREQUENCY, ("level",), SOUND)
+    rows, unit = in_some_unit(table, SOUND, (_FREQUENCY,), ("level",))
     _refuse_beyond(table, level := rows[:, 1], SOUND_LEVELS, "a level", "dB re 20 uPa")
     centres = 10.0 ** (0.1 * band_numbers(table, rows[:, 0]))
     return centres, level - (a_weighting(centres) if unit == SOUND[1] else 0.0)
@@ -130,19 +130,24 @@ def _refuse_beyond(
         raise InputError(name_of(table), received, allowed, "Is the unit right?")
 
 
-def _in_some_unit(
-    table: TableSource, first: Column, names: tuple[str, ...], units: Iterable[str]
+def in_some_unit(
+    table: TableSource,
+    units: Iterable[str],
+    columns: tuple[Column, ...],
+    names: tuple[str, ...],
+    further: tuple[str, ...] = (),
 ) -> tuple[Array, str]:
-    """Rows of a table, and the first of some units in which its columns but the first are.
+    """Rows of a table, and the first of some units in which those of its columns are that have names here.
 
-    Of these the first must be there, and all others may.
+    They stand behind its other columns; all lines may have `further` ones.
     """
     errors = []
     tried = list(units)
     for unit in tried:
-        second, *others = (Column(name, unit, PRESSURE if unit in SOUND else "") for name in names)
+        reference = PRESSURE if unit in SOUND else ""
+        own, more = (tuple(Column(name, unit, reference) for name in each) for each in (names, further))
         try:
-            return read_table(table, (first, second), tuple(others)), unit
+            return read_table(table, columns + own, more), unit
         except InputError as error:
             errors.append(error)
     told, *_ = errors

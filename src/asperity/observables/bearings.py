@@ -1,7 +1,6 @@
 """What is measured at a ball bearing: tones of its parts, velocities in bands, lines of the envelope."""
 
 from contextlib import suppress
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,10 +9,11 @@ from xarray import DataTree
 from asperity.arguments import Array
 from asperity.case.any_case import AnyCase
 from asperity.case.ball_bearing import BearingUnderLoad
+from asperity.case.form import name_of
 from asperity.case.table_headings import Column
-from asperity.case.tables import read_table
+from asperity.case.tables import TableSource, read_table
 from asperity.diagnostics import ISO_BANDS
-from asperity.observables.observable import Collected, Measured, Observable, Predictable, Values
+from asperity.observables.observable import Collected, Measured, Observable, Predictable, Values, reader
 from asperity.schema import bearing
 from asperity.structures.ball_bearing import PARTS
 
@@ -40,20 +40,17 @@ def _tones(case: BearingUnderLoad) -> Array:
 
 def _tone(trial: Predictable, measured: Measured) -> Values:
     """The tones nearest to those that were measured."""
-    case = trial.case
-    assert isinstance(case, BearingUnderLoad)
-    tones = _tones(case)
+    tones = _tones(trial.case)
     apart = np.abs(np.log(measured.at[:, None] / tones))
     return tones[apart.argmin(axis=1)]
 
 
-def _read_tones(path: Path) -> list[Measured]:
-    frequency = read_table(path, (Column("tone", "Hz"),))[:, 0]
-    return [Measured(TONE, frequency, frequency, source=path.name)]
+def _read_tones(table: TableSource) -> list[Measured]:
+    frequency = read_table(table, (Column("tone", "Hz"),))[:, 0]
+    return [Measured(TONE, frequency, frequency, source=name_of(table))]
 
 
-def _of_angle(case: AnyCase) -> tuple[str, ...]:
-    assert isinstance(case, BearingUnderLoad)
+def _of_angle(case: BearingUnderLoad) -> tuple[str, ...]:
     return ("axial",) if case.axial else ("speed",)
 
 
@@ -86,11 +83,6 @@ def _chance_of_velocity(collected: Collected, measured: Measured) -> Array:
     return 20.0 / np.log(10.0) * _in_iso_bands(collected[bearing.BAND_DEVIATION.name], measured.at)
 
 
-def _read_velocity(path: Path) -> list[Measured]:
-    frequency, velocity = read_table(path, (_FREQUENCY, Column("velocity", "m/s"))).T
-    return [Measured(VELOCITY, frequency, velocity, source=path.name)]
-
-
 def _collect_line(tree: DataTree) -> Collected:
     envelope = tree[bearing.ENVELOPE.path].isel(law=0)
     frequency = np.asarray(envelope["envelope_frequency"].values)
@@ -102,9 +94,7 @@ def _collect_line(tree: DataTree) -> Collected:
 
 def _chosen_band(trial: Predictable) -> dict[str, Any]:
     """The band of the envelope, where the run chose it: another one has other lines, by tens of decibels."""
-    case = trial.case
-    assert isinstance(case, BearingUnderLoad)
-    if case.envelope_band is not None or "envelope_band" not in trial.collected:
+    if trial.case.envelope_band is not None or "envelope_band" not in trial.collected:
         return {}
     return {"envelope_band": tuple(trial.collected["envelope_band"].tolist())}
 
@@ -119,22 +109,17 @@ def _line(trial: Predictable, measured: Measured) -> Values:
     return np.array(found)
 
 
-def _read_line(path: Path) -> list[Measured]:
-    frequency, amplitude = read_table(path, (_FREQUENCY, Column("amplitude", "m/s^2"))).T
-    return [Measured(LINE, frequency, amplitude, source=path.name)]
-
-
-def _of_load(case: AnyCase) -> tuple[str, ...]:
-    assert isinstance(case, BearingUnderLoad)
+def _of_load(case: BearingUnderLoad) -> tuple[str, ...]:
     return tuple(name for name in ("radial", "axial") if getattr(case, name)) or ("radial",)
 
 
 OBSERVABLES = (
     Observable(TONE, "Hz", "frequency (Hz)", 20.0, 0.01, _no_bearing, _tone, _of_angle,
-               r"\btones? ?\(", _read_tones, key="measured.tone"),
+               r"\btones? ?\(", _read_tones, keys=("measured.tone",)),
     Observable(VELOCITY, "m/s", "frequency (Hz)", 20.0, 1.0, _no_bearing, _velocity, _of_load,
-               r"velocity", _read_velocity, _collect_velocity, "measured.band_velocity", _chance_of_velocity),
+               r"velocity", reader(VELOCITY, _FREQUENCY, Column("velocity", "m/s")), _collect_velocity,
+               ("measured.band_velocity",), _chance_of_velocity),
     Observable(LINE, "m/s²", "frequency (Hz)", 20.0, 1.0, _no_bearing, _line, _of_load,
-               r"envelope|amplitude.*m/s(\^?2|²)", _read_line, _collect_line, "measured.envelope_line",
-               chosen=_chosen_band),
+               r"envelope|amplitude.*m/s(\^?2|²)", reader(LINE, _FREQUENCY, Column("amplitude", "m/s^2")),
+               _collect_line, ("measured.envelope_line",), chosen=_chosen_band),
 )  # fmt: skip

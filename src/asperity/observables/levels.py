@@ -1,7 +1,6 @@
 """Levels in one-third octaves of a run: sound beside a track, contact force, acceleration."""
 
 from contextlib import suppress
-from pathlib import Path
 
 import numpy as np
 from xarray import DataTree
@@ -12,7 +11,7 @@ from asperity.case.form import name_of
 from asperity.case.measured import band_numbers, read_band_levels
 from asperity.case.scene import Case
 from asperity.case.table_headings import Column
-from asperity.case.tables import read_table
+from asperity.case.tables import TableSource, read_table
 from asperity.observables.decay_rates import keys_of_track, no_track
 from asperity.observables.observable import Collected, Measured, Observable, Predictable, Values
 from asperity.scenes import schema
@@ -70,25 +69,12 @@ def _no_passage(case: AnyCase) -> str:
 
 def _sound(trial: Predictable, measured: Measured) -> Values:
     """Equivalent levels over the pass-by time."""
-    case = trial.whole
-    assert isinstance(case, Case)
-    passed = case.passage.passed
-    assert passed is not None
+    passed = trial.whole.passage.passed
     exposure = levels_in_bands(trial.collected, schema.SOUND_EXPOSURE_LEVEL.name, measured.at)
     return exposure - 10.0 * np.log10(passed[1] - passed[0])
 
 
-def _read_sound(path: Path) -> list[Measured]:
-    centres, level = read_band_levels(path)
-    return [Measured(SOUND, centres, level, source=path.name)]
-
-
-def sound_beside(case: AnyCase) -> list[Measured]:
-    """What the case says was measured as a train passed."""
-    noise = getattr(case, "noise", None)
-    table = getattr(noise, "measured_bands", None)
-    if table is None or keys_of_track(case) is None:
-        return []
+def _read_sound(table: TableSource) -> list[Measured]:
     return [Measured(SOUND, *read_band_levels(table), source=name_of(table))]
 
 
@@ -115,48 +101,45 @@ def _acceleration(trial: Predictable, measured: Measured) -> Values:
     """Of the sensor nearest to the place of the response; without one the energy mean of all."""
     held = levels_in_bands(trial.collected, schema.ACCELERATION_LEVEL.name, measured.at)
     if measured.places is not None:
-        case = trial.case
-        assert isinstance(case, Case)
-        apart = np.abs(np.array(case.rolled_over.sensor_positions) - measured.places[0])
+        sensors = np.array(trial.case.rolled_over.sensor_positions)
+        apart = np.abs(sensors - measured.places[0])
         return held[apart.argmin()]
     return 10.0 * np.log10(np.mean(10.0 ** (0.1 * held), axis=0))
 
 
-def _read_levels(what: str, reference: str, path: Path) -> list[Measured]:
-    rows = read_table(path, (_FREQUENCY, Column("level", "dB", reference)))
-    centres = 10.0 ** (0.1 * band_numbers(path, rows[:, 0]))
-    return [Measured(what, centres, rows[:, 1], source=path.name)]
+def _read_levels(what: str, reference: str, table: TableSource) -> list[Measured]:
+    rows = read_table(table, (_FREQUENCY, Column("level", "dB", reference)))
+    centres = 10.0 ** (0.1 * band_numbers(table, rows[:, 0]))
+    return [Measured(what, centres, rows[:, 1], source=name_of(table))]
 
 
-def _of_texture(case: AnyCase) -> tuple[str, ...]:
+def _of_texture(case: Case) -> tuple[str, ...]:
     """Keys that raise or lower all levels."""
-    assert isinstance(case, Case)
     surface = case.surface
     if surface.rms is not None:
         return ("surface.rms",)
     return ("surface.level",) if surface.spectrum is not None else ("speed",)
 
 
-def _of_sound(case: AnyCase) -> tuple[str, ...]:
+def _of_sound(case: Case) -> tuple[str, ...]:
     return ("noise.receiver_offset",)
 
 
-def _of_beam(case: AnyCase) -> tuple[str, ...]:
-    assert isinstance(case, Case)
+def _of_beam(case: Case) -> tuple[str, ...]:
     losses = (f"{case.OVER}.loss_factor",) if "loss_factor" in case.rolled_over.keys else ()
     return (*_of_texture(case), *losses)
 
 
 OBSERVABLES = (
     Observable(FORCE, "dB re 1 N", "frequency (Hz)", 0.0, _BY_CHANCE, _no_rolling, _force, _of_texture,
-               r"dB re\.? ?1? ?N\b|force level", lambda path: _read_levels(FORCE, "1 N", path),
-               lambda tree: _collect(spectra.FORCE_LEVEL, tree), "measured.force_level", _chance),
+               r"dB re\.? ?1? ?N\b|force level", lambda table: _read_levels(FORCE, "1 N", table),
+               lambda tree: _collect(spectra.FORCE_LEVEL, tree), ("measured.force_level",), _chance),
     Observable(ACCELERATION, "dB re 1e-6 m/s²", "frequency (Hz)", 0.0, _BY_CHANCE, _no_sensors, _acceleration,
                _of_beam, r"acceleration level|dB re\.? ?[^,;]*m/s(\^?2|²)",
-               lambda path: _read_levels(ACCELERATION, "1 um/s^2", path),
-               lambda tree: _collect(schema.ACCELERATION_LEVEL, tree), "measured.acceleration_level",
+               lambda table: _read_levels(ACCELERATION, "1 um/s^2", table),
+               lambda tree: _collect(schema.ACCELERATION_LEVEL, tree), ("measured.acceleration_level",),
                _chance),
     Observable(SOUND, "dB re 20 µPa", "frequency (Hz)", 0.0, _BY_CHANCE, _no_passage, _sound, _of_sound,
                r"dB ?\(A\)|sound|pass.?by|L_?p|\bdB\b", _read_sound,
-               lambda tree: _collect(schema.SOUND_EXPOSURE_LEVEL, tree), "noise.measured_bands", _chance),
+               lambda tree: _collect(schema.SOUND_EXPOSURE_LEVEL, tree), ("noise.measured_bands",), _chance),
 )  # fmt: skip

@@ -1,15 +1,14 @@
 """Mobility, accelerance and receptance of a rail or of a structure, at one place or from one to another."""
 
-from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from asperity.arguments import Array
 from asperity.case.any_case import AnyCase
 from asperity.case.form import name_of
-from asperity.case.measured import FORMS, read_mobility
+from asperity.case.measured import FORMS, in_some_unit, read_mobility
 from asperity.case.table_headings import Column
-from asperity.case.tables import read_table, refuse_disorder
+from asperity.case.tables import TableSource, refuse_disorder
 from asperity.errors import InputError
 from asperity.observables.decay_rates import keys_of_track, supports
 from asperity.observables.observable import Measured, Observable, Predictable, Values
@@ -43,77 +42,55 @@ def _predict(trial: Predictable, measured: Measured) -> Values:
         at, driven = measured.places or (middle, middle)
         receptance = rail.receptance(frequency, at, driven)
     else:
-        over = getattr(case, "rolled_over")  # noqa: B009
+        over = case.rolled_over
         first, last = over.extent
         middle = 0.5 * (first + last)
         at, driven = measured.places or (middle, middle)
-        highest = max(float(frequency[-1]), getattr(case, "numerics").highest_frequency)  # noqa: B009
+        highest = max(float(frequency[-1]), case.numerics.highest_frequency)
         receptance = modal_receptance(over.model(highest), frequency, at, driven)
     found = 2j * np.pi * frequency * receptance
     return np.asarray(found if np.iscomplexobj(measured.values) else np.abs(found))
 
 
-def _free(case: AnyCase) -> tuple[str, ...]:
+def _free(case: Any) -> tuple[str, ...]:
     if keys_of_track(case) is not None:
         return supports(case)
-    over = getattr(case, "OVER", "")
+    over = case.OVER
     names = ("height", "loss_factor", "support_stiffness", "damping_ratio")
     section = getattr(case, over)
     return tuple(f"{over}.{name}" for name in names if name in section.keys and section.is_active(name))
 
 
-def read_mobilities(path: Path) -> list[Measured]:
+def read_mobilities(table: TableSource) -> list[Measured]:
     """Mobilities in a table: at one place, or with the places of response and force in each line."""
     try:
-        frequency, mobility = read_mobility(path, OF_ANYTHING)
+        frequency, mobility = read_mobility(table, OF_ANYTHING)
     except InputError as error:
         try:
-            return _transfer(path)
+            return _transfer(table)
         except InputError:
             raise error from None
-    return [Measured(MOBILITY, frequency, mobility, source=path.name)]
+    return [Measured(MOBILITY, frequency, mobility, source=name_of(table))]
 
 
-def _transfer(path: Path) -> list[Measured]:
+def _transfer(table: TableSource) -> list[Measured]:
     """Mobilities between places, one for each pair of them."""
-    rows, power = _in_some_form(path)
+    rows, unit = in_some_unit(table, FORMS, (_FREQUENCY, *_PLACES), ("real part", "imaginary part"))
     found = []
     pairs = np.unique(rows[:, 1:3], axis=0)
     for at, driven in pairs:
         own = rows[(rows[:, 1] == at) & (rows[:, 2] == driven)]
         frequency = own[:, 0]
         values = own[:, 3] + 1j * own[:, 4]
-        refuse_disorder(path, frequency)
-        mobility = values * (2j * np.pi * frequency) ** power
+        refuse_disorder(table, frequency)
+        mobility = values * (2j * np.pi * frequency) ** FORMS[unit]
         places = (float(at), float(driven))
-        found.append(Measured(MOBILITY, frequency, mobility, places=places, source=path.name))
+        found.append(Measured(MOBILITY, frequency, mobility, places=places, source=name_of(table)))
     return found
-
-
-def _in_some_form(path: Path) -> tuple[Array, int]:
-    """Rows of a table of frequency, places and both parts; the power of iω that makes a mobility of them."""
-    last: InputError | None = None
-    for unit, power in FORMS.items():
-        parts = (Column("real part", unit), Column("imaginary part", unit))
-        try:
-            return read_table(path, (_FREQUENCY, *_PLACES, *parts)), power
-        except InputError as error:
-            last = error
-    assert last is not None
-    raise last
-
-
-def mobility_beside(case: AnyCase) -> list[Measured]:
-    """What the case says was measured on its rail."""
-    keys = keys_of_track(case)
-    if keys is None or keys.mobility is None:
-        return []
-    frequency, mobility = read_mobility(keys.mobility)
-    return [Measured(MOBILITY, frequency, mobility, source=name_of(keys.mobility))]
 
 
 OBSERVABLES = (
     Observable(MOBILITY, UNITS, "frequency (Hz)", 20.0, 1.0, no_structure, _predict, _free,
                r"mobility|accelerance|inertance|receptance|m/s/N|\(m/s\)/N|m/s\^?2/N|m/s²/N|\bm/N\b",
-               read_mobilities, key="measured.mobility"),
+               read_mobilities, keys=("track.mobility", "measured.mobility")),
 )  # fmt: skip

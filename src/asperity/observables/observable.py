@@ -3,14 +3,15 @@
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
 from xarray import DataTree
 
 from asperity.arguments import Array, NDArray, as_row, require, shown
-from asperity.case.any_case import AnyCase
+from asperity.case.form import name_of
+from asperity.case.table_headings import Column
+from asperity.case.tables import TableSource, read_table
 
 Values = NDArray[np.inexact]
 Collected = dict[str, Array]
@@ -101,11 +102,11 @@ class Predictable(Protocol):
     """A case of which something is predicted, with what a run of it gives."""
 
     @property
-    def case(self) -> AnyCase:
-        """The case."""
+    def case(self) -> Any:
+        """The case, of a kind that lacks nothing of what is predicted."""
 
     @property
-    def whole(self) -> AnyCase:
+    def whole(self) -> Any:
         """The case as it is run."""
 
     @property
@@ -142,11 +143,11 @@ class Observable:
     words : str
         Pattern of words in a heading, or in the name of a file, that tell it.
     read : callable, optional
-        Reads it from a file with a line for each place of its axis.
+        Reads it from a file with a line for each place of its axis, or from the array that it would hold.
     collect : callable, optional
         What is kept for it of the result of a run; without one the case is not run.
-    key : str
-        Key of a case that names a table of it, with its section.
+    keys : tuple of str
+        Keys of a case that name a table of it, with their sections.
     chance : callable, optional
         Standard deviation of each predicted value (n,), dB, by the chance of the record that was computed.
     chosen : callable, optional
@@ -158,13 +159,13 @@ class Observable:
     axis: str
     decade: float
     uncertainty: float
-    lacks: Callable[[AnyCase], str]
+    lacks: Callable[[Any], str]
     predict: Callable[[Predictable, Measured], Values]
-    free: Callable[[AnyCase], tuple[str, ...]]
+    free: Callable[[Any], tuple[str, ...]]
     words: str
-    read: Callable[[Path], list[Measured]] | None = None
+    read: Callable[[TableSource], list[Measured]] | None = None
     collect: Callable[[DataTree], Collected] | None = None
-    key: str = ""
+    keys: tuple[str, ...] = ()
     chance: Callable[[Collected, Measured], Array] | None = None
     chosen: Callable[[Predictable], dict[str, Any]] | None = None
 
@@ -187,3 +188,13 @@ class Observable:
     def is_told(self, text: str) -> bool:
         """Whether words tell this quantity."""
         return re.search(self.words, text, re.IGNORECASE) is not None
+
+
+def reader(what: str, place: Column, value: Column) -> Callable[[TableSource], list[Measured]]:
+    """Reader of a quantity from a table with two columns: places along its axis, and its values."""
+
+    def read(table: TableSource) -> list[Measured]:
+        at, values = read_table(table, (place, value)).T
+        return [Measured(what, at, values, source=name_of(table))]
+
+    return read

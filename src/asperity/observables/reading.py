@@ -2,7 +2,7 @@
 
 import re
 import shlex
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import groupby
 from pathlib import Path
@@ -14,9 +14,9 @@ from asperity.arguments import Array, NDArray, listed, nearest, one_of, require,
 from asperity.case.any_case import AnyCase, entry_of
 from asperity.case.form import content
 from asperity.case.table_headings import WIDE, are_words
-from asperity.case.tables import LARGEST_TABLE
+from asperity.case.tables import LARGEST_TABLE, TableSource
 from asperity.errors import InputError
-from asperity.observables import BUILT_IN, decay_rates, levels, mobilities, observable
+from asperity.observables import BUILT_IN, decay_rates, observable
 from asperity.observables.observable import Measured, Observable
 from asperity.parameters import FROM_PYTHON
 from asperity.spectra import a_weighting
@@ -331,8 +331,24 @@ def _with_neighbours(values: Array, reach: int) -> Array:
 
 def beside(case: AnyCase) -> list[Measured]:
     """What the case itself says was measured."""
-    beside_track = [*decay_rates.rates_beside(case), *mobilities.mobility_beside(case)]
-    return [*beside_track, *levels.sound_beside(case), *tables_beside(case)]
+    of_track = [
+        each
+        for of in BUILT_IN.values()
+        if of.read is not None
+        for title, table in _named(case, of)
+        if title != MEASURED
+        for each in of.read(table)
+    ]
+    return [*of_track, *tables_beside(case)]
+
+
+def _named(case: AnyCase, of: Observable) -> Iterator[tuple[str, TableSource]]:
+    """Tables of a quantity that a case names, each with the section in which it does."""
+    for key in of.keys:
+        title, _, name = key.partition(".")
+        table = getattr(getattr(case, title, None), name, None)
+        if table is not None:
+            yield title, table
 
 
 MEASURED = "measured"
@@ -342,14 +358,12 @@ MEASURED = "measured"
 def tables_beside(case: AnyCase) -> list[Measured]:
     """What tables hold that this section of a case names; an `InputError` tells what it cannot have."""
     found = []
-    section = getattr(case, MEASURED, None)
     for of in BUILT_IN.values():
-        title, _, name = of.key.partition(".")
-        path = getattr(section, name, None) if title == MEASURED else None
-        if path is not None:
-            if lacks := of.lacks(case):
-                raise InputError(of.key, f"a case with {lacks}", "what the case can predict")
-            found += read_measured(case, path, {}, of.name)[0]
+        for title, table in _named(case, of):
+            if title == MEASURED and isinstance(table, Path):
+                if lacks := of.lacks(case):
+                    raise InputError(of.keys[-1], f"a case with {lacks}", "what the case can predict")
+                found += read_measured(case, table, {}, of.name)[0]
     return found
 
 

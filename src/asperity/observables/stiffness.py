@@ -1,19 +1,15 @@
 """The stiffness of a rough contact over its load."""
 
-from pathlib import Path
-
 import numpy as np
 from xarray import DataTree
 
 from asperity.case.any_case import AnyCase
 from asperity.case.scene import Case
 from asperity.case.table_headings import Column
-from asperity.case.tables import read_table
-from asperity.observables.observable import Collected, Measured, Observable, Predictable, Values
+from asperity.observables.observable import Collected, Measured, Observable, Predictable, Values, reader
 from asperity.schema import contact
 
 STIFFNESS = "contact stiffness"
-_COLUMNS = (Column("load", "N"), Column("stiffness", "N/m"))
 
 
 def _no_contact(case: AnyCase) -> str:
@@ -37,18 +33,13 @@ def _predict(trial: Predictable, measured: Measured) -> Values:
     return np.exp(np.interp(np.log(measured.at), place, over, left=np.nan, right=np.nan))
 
 
-def _read(path: Path) -> list[Measured]:
-    load, stiffness = read_table(path, _COLUMNS).T
-    return [Measured(STIFFNESS, load, stiffness, source=path.name)]
-
-
-def _free(case: AnyCase) -> tuple[str, ...]:
-    assert isinstance(case, Case)
+def _free(case: Case) -> tuple[str, ...]:
     return ("surface.rms",) if case.surface.rms is not None else ("surface.level",)
 
 
 OBSERVABLES = (
     Observable(STIFFNESS, "N/m", "load (N)", 20.0, 0.5, _no_contact, _predict, _free,
-               r"load.*stiffness|stiffness.*load", _read, _collect,
-               "measured.contact_stiffness"),
+               r"load.*stiffness|stiffness.*load",
+               reader(STIFFNESS, Column("load", "N"), Column("stiffness", "N/m")), _collect,
+               ("measured.contact_stiffness",)),
 )  # fmt: skip
