@@ -9,7 +9,8 @@ from asperity import BallBearing, HalfSpace
 from asperity.errors import InputError, OutOfRangeWarning
 from asperity.laws.layout import force
 from asperity.scenarios.raceway_grids import FOLLOWED, raceway_on
-from asperity.scenarios.raceway_laws import OnRaceway, ball_heights, raceway_laws
+from asperity.scenarios.raceway_laws import OnRaceway, raceway_laws
+from asperity.scenarios.roller_raceways import felt_by
 from asperity.surfaces.faults import Fault
 from asperity.surfaces.raceway import AroundTexture
 
@@ -59,7 +60,7 @@ def test_higher_raceway_is_a_larger_approach(where):
     for name in ALL:
         wanted = force(before[name], 0.1 * MM, APPROACH + h)
         assert_allclose(force(after[name], 0.1 * MM, APPROACH), wanted, rtol=2e-3)
-    assert_allclose(ball_heights(CONTACT, raised, LOAD), h, rtol=1e-9)
+    assert_allclose(felt_by(CONTACT, raised, LOAD), h, rtol=1e-9)
 
 
 def test_force_closes_around_a_rough_raceway():
@@ -118,7 +119,7 @@ def test_waves_are_felt_by_sin_q_over_q(waves):
     for name, factor in (averaged | {"hertz": 1.0}).items():
         above = (force(law[name], places, APPROACH) / CONTACT.stiffness_constant) ** (2 / 3) - APPROACH
         assert abs(np.fft.rfft(above)[waves] - factor * height) < 0.02 * abs(height), name
-    felt = np.fft.rfft(ball_heights(CONTACT, surface, LOAD))[waves]
+    felt = np.fft.rfft(felt_by(CONTACT, surface, LOAD))[waves]
     assert abs(felt - np.sin(q) / q * height) < 4e-3 * abs(felt)
 
 
@@ -135,7 +136,7 @@ def test_pit_narrower_than_the_contact_takes_a_part_of_it_away():
         assert_allclose(found[0], found[1], rtol=2e-3)
     assert 0.02 < 1.0 - force(law["table"], middle, APPROACH) / LOAD < 0.3
     # under the load for which they are made the simple laws have it, too; far from it nothing is lost
-    sunk = APPROACH - ball_heights(CONTACT, on.surface, LOAD)[round(middle / on.surface.spacing[0])]
+    sunk = APPROACH - felt_by(CONTACT, on.surface, LOAD)[round(middle / on.surface.spacing[0])]
     for name in ALL:
         assert_allclose(force(law[name], middle, sunk), LOAD, rtol=4e-3)
         assert_allclose(force(law[name], middle + 1.5 * MM, APPROACH), LOAD, rtol=1e-3)

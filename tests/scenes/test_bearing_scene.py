@@ -17,7 +17,7 @@ from asperity.errors import CaseError, ComputationError, InputError, OutOfRangeW
 from asperity.parameters import Number, key
 from asperity.reference.materials import MATERIALS
 from asperity.running import prepare_case
-from asperity.scenarios import raceway_laws, run_time, scanned_states
+from asperity.scenarios import raceway_laws, roller_raceways, run_time, scanned_states
 from asperity.scenarios.prepared_bearing import CELL_TIME, expected, prepare_bearing
 from asperity.scenes import computed_bearing
 from asperity.scenes.bearing_heard import heard_group
@@ -91,7 +91,7 @@ def test_a_pit_strikes_by_what_the_static_load_loses_over_it():
     """Below the load, 25° and 40° beside it, and opposite, where no ball is loaded."""
     prepared, heard, lost = prepare_bearing(as_case(BEARING)), [], []
     bearing = prepared.case.bearing.bearing
-    depth = -raceway_laws.ball_heights(
+    depth = -roller_raceways.felt_by(
         bearing.outer_contact, prepared.raceways[1], prepared.case.contacts[1][1]
     ).min()
     for angle in (0, 25, 40, 180):

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import Any
 
 from asperity.case.form import Section
 from asperity.contact.film import LINES, Film, LineFilm, inlet_heating
 from asperity.contact.oil import DENSITY, GRADES, INDEX, Oil
 from asperity.errors import InputError
 from asperity.parameters import Choice, Number, Quantity, key, optional
-
-if TYPE_CHECKING:
-    pass
 
 GRADE = "ISO VG "
 _VISCOSITY = Quantity("m^2/s", above=0)
@@ -82,9 +80,12 @@ class LubricantKeys(Section):
 
     def film(self, contact: Any, speed: float) -> Film | None:
         """The film in a smooth contact whose surfaces roll with a speed, m/s, if there is oil."""
-        if (oil := self.found) is None:
-            return None
-        return Film(contact, speed, *self._at(oil, speed))
+        oil = self.found
+        return None if oil is None else self._kind(contact, speed, *self._at(oil, speed))
+
+    @property
+    def _kind(self) -> Callable[..., Film]:
+        return Film
 
     def _at(self, oil: Oil, speed: float) -> tuple[float, float, float]:
         """Viscosity, Pa s, its pressure coefficient, 1/Pa, and share that is left of the film at a speed."""
@@ -121,8 +122,6 @@ class RollerLubricantKeys(LubricantKeys):
         goes_with=_WITH_OIL,
     )
 
-    def film(self, contact: Any, speed: float) -> Film | None:
-        """The film in a smooth contact whose surfaces roll with a speed, m/s, if there is oil."""
-        if (oil := self.found) is None:
-            return None
-        return LineFilm(contact, speed, *self._at(oil, speed), fit=self.formula)
+    @property
+    def _kind(self) -> Callable[..., Film]:
+        return partial(LineFilm, fit=self.formula)

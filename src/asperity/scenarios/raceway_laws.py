@@ -97,7 +97,7 @@ class OnRaceway:
 
     @cached_property
     def axes(self) -> tuple[float, float]:
-        """Half axes of the smooth contact under the load, m."""
+        """Half axes of the smooth contact under the load, m, those of a roller half its width and length."""
         return self.contact.semi_axes(self.contact.approach(self.load))
 
     @cached_property
@@ -544,12 +544,3 @@ def laws_on(
         else:
             laws[law.name] = on.build(law.name)
     return laws
-
-
-def ball_heights(contact: Hertz, surface: Raceway, load: float) -> Array:
-    """Heights (rows,), m, closed, that the contact of a ball under a load, N, feels around its `surface`.
-
-    Roughness and waves are averaged under the patch, and a fault has the height by which it changes the
-    approach under the load on a smooth raceway.
-    """
-    return OnRaceway(contact, surface, positive("load of a ball (N)", load)).felt

@@ -81,7 +81,11 @@ def on_cells(on: OnRaceway, heights: Array) -> Array:
 
 
 def felt_by(contact: AnyContact, surface: Raceway, load: float) -> Array:
-    """Heights (rows,), m, closed, that the contact of a ball or roller under a load, N, feels around it."""
+    """Heights (rows,), m, closed, that the contact of a ball or roller under a load, N, feels around it.
+
+    Roughness and waves are averaged under the patch, and a fault has the height by which it changes the
+    approach under the load on a smooth raceway.
+    """
     return on_surface(contact, surface, positive("load of a ball or roller (N)", load)).felt
 
 
@@ -109,11 +113,6 @@ class OnRollerRaceway(OnRaceway):
     """
 
     contact: SlicedContact  # type: ignore[assignment]
-
-    @cached_property
-    def axes(self) -> tuple[float, float]:
-        """Half width of the smooth contact under the load, and half its length, m."""
-        return self.contact.semi_axes(self.contact.approach(self.load))
 
     @cached_property
     def shape(self) -> RollerGap:
