@@ -213,13 +213,15 @@ def test_what_drives_is_the_heat():
     missing = []
     for bodies in (creeping((1.7e-3, -3.3e-3, 1.7), cells=cells) for cells in (25, 49)):
         found = bodies.at(LOAD)
-        power = bodies.power(forces_of(found))
+        power = -SPEED * float(np.dot(bodies.creepage, forces_of(found)))
         assert found.dissipated_power == pytest.approx(power, rel=1e-12)
+        loads = np.array([LOAD, 0.0, -1.0])
+        assert bodies.power(loads) == pytest.approx([power, 0.0, 0.0], rel=5e-3)
         missing.append(1.0 - found.work_of_slip * SPEED / power)
     assert 0.0 < 1.8 * missing[1] < missing[0] < 0.11
     sliding = creeping((0.02, 0.02, 0.0))
     heat = 0.3 * LOAD * SPEED * math.hypot(0.02, 0.02)
-    assert sliding.power(forces_of(sliding.at(LOAD))) == pytest.approx(heat, rel=2e-3)
+    assert sliding.power(np.array(LOAD)) == pytest.approx(heat, rel=2e-3)
 
 
 def test_slopes_are_those_of_the_coefficient_in_full_slip_and_of_the_linear_theory_before():

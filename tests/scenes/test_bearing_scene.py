@@ -24,6 +24,7 @@ from asperity.scenes.bearing_heard import heard_group
 from asperity.scenes.bearing_validity import out_of_place
 from asperity.scenes.computed_bearing import bearing_rings, cage_slip, compute_bearing, thinned
 from asperity.scenes.figures.bearing import ball_turn, load_zone
+from asperity.scenes.figures.sideways import friction_table
 from asperity.scenes.report import page_of
 from asperity.schema import bearing as schema
 from asperity.schema import spectra
@@ -411,13 +412,20 @@ def test_friction_takes_less_heat_than_if_all_slipped_and_turns_the_rings_agains
     assert 0.0 <= slips.min() < slips.max() < 1.0
     np.testing.assert_allclose(found["spin_moment"].values[touching], 0.0, atol=1e-9)  # no contact angle
     torque = found["friction_torque"].values[0]
-    power = tree["rolling/bearing_friction_power"].values[0]
+    power = tree["rolling/friction_power"].values[0].sum(axis=0)
     turns = as_case(BEARING).kinematics
     assert power.mean() / (2.0 * np.pi * turns.inner) == pytest.approx(torque, rel=1e-9)
     assert power.mean() == pytest.approx(np.nansum(heat, axis=(0, 2)).mean(), rel=0.1)
     page = page_of(tree)
     assert "With the friction of the case, parts of a contact stick" in page
     assert f"ask the rings for {rounded(1e3 * torque)} N mm" in page
+    assert "The contact that makes more heat of the two most loaded ones of both rings" in page
+    rows = [[cell.text for cell in row] for row in friction_table(tree).rows]
+    assert [row[0] for row in rows] == [
+        "inner ring",
+        "outer ring",
+        *(f"in time, {law}" for law in BEARING["laws"]),
+    ]
     assert any("Kalker" in each for each in json.loads(tree.attrs["citations"]))
 
 

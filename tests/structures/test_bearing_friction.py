@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from asperity import BallBearing, material
+from asperity import BallBearing, Friction, material
 from asperity.contact.friction import cell_places
 from asperity.contact.groove_creepage import (
     PURE_ROLLING,
@@ -29,8 +29,12 @@ INNER, LOAD = B6205.inner_contact, 60.0
 AXES = INNER.semi_axes(INNER.approach(LOAD))
 
 
+def rolled(contact, friction, spin=0.0, curvature=0.0, bodies=(STEEL, STEEL)):
+    return BallOnRaceway(contact, curvature, bodies, Friction(friction), LOAD, spin).at(LOAD)
+
+
 def in_groove(friction, spin=0.0, curvature=CURVATURE):
-    return BallOnRaceway(INNER, curvature, (STEEL, STEEL), friction).roll(LOAD, spin)
+    return rolled(INNER, friction, spin, curvature)
 
 
 def test_a_ball_that_hardly_spins_is_driven_sideways_by_the_linear_theory(monkeypatch):
@@ -42,7 +46,7 @@ def test_a_ball_that_hardly_spins_is_driven_sideways_by_the_linear_theory(monkey
     forces = []
     for cells in ((40, 40), (80, 80)):
         monkeypatch.setattr(bearing_friction, "CELLS", cells)
-        found = BallOnRaceway(circle, 0.0, (soft, soft), 1.0).roll(LOAD, spin)
+        found = rolled(circle, 1.0, spin, bodies=(soft, soft))
         assert found.slip_area < 0.1 * found.normal.area
         forces.append(found.force[1])
     linear = -200e9 / 2.5 * radius**3 * 1.47 * spin
@@ -58,7 +62,7 @@ def test_a_ball_that_pivots_has_the_moment_of_full_slip(axes):
     expected = 0.05 * spin_moment(LOAD, of)
     if axes == "circle":
         assert expected == pytest.approx(3.0 * math.pi / 16.0 * 0.05 * LOAD * of[0])
-    found = BallOnRaceway(contact, 0.0, (STEEL, STEEL), 0.05).roll(LOAD, 2e3)
+    found = rolled(contact, 0.05, 2e3)
     assert -found.moment == pytest.approx(expected, rel=0.01)
     assert found.work == pytest.approx(2e3 * expected, rel=0.01)
     assert found.slip_area > 0.97 * found.normal.area
@@ -84,10 +88,20 @@ def test_where_all_slips_heat_is_the_most_there_is_on_both_rings():
     loaded = of.loaded(radial=200.0)
     found = creepage_of(loaded)
     turning = of.kinematics(25.0, contact_angle=0.0)
-    heat = friction_of_balls(loaded, found, turning, 0.001).heat
+    heat = friction_of_balls(loaded, found, turning, Friction(0.001)).heat
     touching = np.isfinite(heat)
     most = 0.001 * rolling_speed(of, turning) * found.sliding
     np.testing.assert_allclose(heat[touching], most[touching], rtol=0.01)
+
+
+def test_friction_that_falls_at_once_leaves_its_share_where_all_slips():
+    """Heat of full slip is µ ∫ p |s| dA, and at v over a velocity far below all slip that of the least µ."""
+    most = 0.5 * 0.006 * sliding_speed(LOAD, AXES, 0.0, CURVATURE, INNER.radius_x)
+    for velocity in (None, 1e-5):
+        falling = Friction(0.006, 0.5, velocity)
+        ball = BallOnRaceway(INNER, CURVATURE, (STEEL, STEEL), falling, LOAD, speed=2.0)
+        assert ball.at(LOAD).work == pytest.approx(most, rel=0.01)
+        assert ball.power(np.array([LOAD])) == pytest.approx([2.0 * most], rel=0.01)
 
 
 @pytest.mark.parametrize("spin", [0.0, 30.0])
@@ -107,16 +121,16 @@ def test_rings_are_turned_by_what_grooves_dissipate():
     of = B6205.with_(contact_angle=None, clearance=0.0)
     turning = of.kinematics(25.0, contact_angle=0.0)
     loaded = of.loaded(radial=200.0)
-    friction = friction_of_balls(loaded, creepage_of(loaded), turning, 0.1)
+    friction = friction_of_balls(loaded, creepage_of(loaded), turning, Friction(0.1))
     ball = 0.5 * D
     driven = 0.0
     for angle in range(len(loaded.azimuth)):
         for k in np.flatnonzero(np.isfinite(friction.heat[0, angle])):
             curved = []
             for ring, load in (("inner", loaded.inner_load), ("outer", loaded.outer_load)):
-                rolled = BallOnRaceway.of(of, ring, 0.1)
-                moment = rolled.roll(load[angle, k]).second_moment
-                curved.append(0.5 * rolled.curvature * moment)
+                balls = BallOnRaceway.of(of, ring, Friction(0.1), load[angle, k])
+                moment = balls.at(load[angle, k]).second_moment
+                curved.append(0.5 * balls.curvature * moment)
             # along the path of each contact tractions on the ball brake its sides and drive its middle
             along = 0.5 * (curved[0] + curved[1]) / ball
             radii = 0.5 * PITCH - ball, 0.5 * PITCH + ball
@@ -134,7 +148,7 @@ def test_a_ring_is_turned_by_the_moments_of_balls_that_spin():
     loaded = of.loaded(axial=300.0)
     found = creepage_of(loaded)
     turning = of.kinematics(25.0, contact_angle=loaded.contact_angle)
-    friction = friction_of_balls(loaded, found, turning, 0.05)
+    friction = friction_of_balls(loaded, found, turning, Friction(0.05))
     on = int(np.argmax(found.spin[:, 0, 0]))
     moments = friction.spin_moment[on, 0] * np.sin((loaded.inner_angle, loaded.outer_angle)[on][0])
     spun = rolling_speed(of, turning) * friction.spin_moment[on, 0] * found.spin[on, 0]
@@ -147,11 +161,11 @@ def test_balls_that_do_not_touch_and_bearings_without_friction_give_no_heat():
     loaded = of.loaded(radial=100.0)
     found = creepage_of(loaded)
     turning = of.kinematics(25.0)
-    none = friction_of_balls(loaded, found, turning, 0.0)
+    none = friction_of_balls(loaded, found, turning, Friction(0.0))
     np.testing.assert_array_equal(np.isnan(none.heat), np.isnan(found.sliding))
     assert np.nanmax(none.heat) == 0.0
     with pytest.raises(InputError, match=r"friction: received -0\.1"):
-        friction_of_balls(loaded, found, turning, -0.1)
+        friction_of_balls(loaded, found, turning, Friction(-0.1))
 
 
 def test_a_ball_gyrates_by_the_change_of_its_momentum_as_its_axis_goes_round():
@@ -175,9 +189,11 @@ def test_a_ball_gyrates_by_the_change_of_its_momentum_as_its_axis_goes_round():
     step = 1e-8
     moment = np.linalg.norm(momentum(step) - momentum(-step)) / (2.0 * step)
     held = 0.1 * (loaded.inner_load[0, 0] + loaded.outer_load[0, 0]) * 0.5 * D
-    friction = friction_of_balls(loaded, found, turning, 0.1)
+    friction = friction_of_balls(loaded, found, turning, Friction(0.1))
     np.testing.assert_allclose(friction.gyration, moment / held, rtol=1e-5)
-    assert np.all(friction_of_balls(loaded, found, turning, 0.01).gyration > 5.0 * friction.gyration)
+    assert np.all(
+        friction_of_balls(loaded, found, turning, Friction(0.01)).gyration > 5.0 * friction.gyration
+    )
 
 
 def test_torque_turns_one_ring_against_the_other():

@@ -22,6 +22,7 @@ from asperity.case.bearing_sections import (
     ShaftKeys,
 )
 from asperity.case.body import DAMPING
+from asperity.case.creep import BallCreepKeys
 from asperity.case.form import section
 from asperity.case.lubricant import LubricantKeys
 from asperity.case.measured_tables import MeasuredBearingKeys
@@ -49,6 +50,7 @@ from asperity.written_numbers import rounded
 
 if TYPE_CHECKING:
     from asperity.contact.film import Film
+    from asperity.contact.friction import Friction
     from asperity.contact.hertz import Hertz
     from asperity.structures.bearing_statics import LoadedBearing
     from asperity.structures.ring import Around, Ring
@@ -183,6 +185,7 @@ class BearingUnderLoad(AnyCase):
     fault: FaultKeys = section(
         FaultKeys, "a fault of a raceway or of a ball; of several each below [[fault]]", repeated=True
     )
+    creep: BallCreepKeys = section(BallCreepKeys, "how friction of balls falls where they slip", last=True)
     measured: MeasuredBearingKeys = section(
         MeasuredBearingKeys,
         "tables of what was measured, beside which the report states what was computed",
@@ -362,7 +365,8 @@ class BearingUnderLoad(AnyCase):
     @property
     def numbers_written(self) -> float:
         """How many numbers its result holds, at most."""
-        each = 5 * self.bearing.bearing.balls + 10
+        of_a_ball = 5 if self.friction is None else 7
+        each = of_a_ball * self.bearing.bearing.balls + 10
         return len(self.laws) * each * self.duration * self.sampling_rate
 
     @property
@@ -382,6 +386,21 @@ class BearingUnderLoad(AnyCase):
                 allowed = "laws that are not solved in every step, where a film of oil is in series"
                 yield InputError(f"laws[{number}]", f'"{law}"', allowed, "Take it out, or leave out the oil.")
 
+    def _problems_of_creep(self) -> Iterator[InputError]:
+        """Friction that falls is there, and falls at one speed of slip."""
+        for name, given in self.creep.given().items():
+            received = rounded(given)
+            if self.friction is None:
+                yield InputError(f"creep.{name}", received, "only together with friction")
+            elif isinstance(self.speed, SpeedCourse):
+                allowed = "friction that stays where the speed changes"
+                yield InputError(f"creep.{name}", received, allowed, "Give a constant speed, or remove it.")
+
+    @property
+    def friction_law(self) -> Friction | None:
+        """Friction of balls on raceways, if it is looked at."""
+        return None if self.friction is None else self.creep.law(self.friction)
+
     def problems(self) -> Iterator[InputError]:
         """A load that is carried, at a speed at which balls stay between the rings; and a record of it."""
         yield from self.problems_of_law_keys()
@@ -399,6 +418,7 @@ class BearingUnderLoad(AnyCase):
             )
             yield InputError("speed", received, allowed)
         yield from self._problems_of_films()
+        yield from self._problems_of_creep()
         of = self.bearing.bearing
         if isinstance(of, BallBearing) and of.arch_angle is not None:
             received = f"{rounded(math.degrees(of.arch_angle), 4)} deg"

@@ -2,6 +2,7 @@
 
 import math
 import warnings
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache, partial
@@ -334,8 +335,47 @@ ROUNDING = 1e-9
 """Share of what friction carries below which a force is none: it would be opposite by symmetry."""
 
 
+class SteadyRolling(ABC):
+    """Friction of two smooth bodies that roll steadily, under any load up to the largest.
+
+    Notes
+    -----
+    Quasi-steady: the load changes little while a place passes through the contact, so that waves of the force
+    are long against it, v/f > 2a. The pressure is that of smooth bodies without friction.
+    """
+
+    speed: float
+    largest_load: float
+
+    @abstractmethod
+    def at(self, load: float) -> SlidingContact:
+        """The contact under a load, N."""
+
+    @cached_property
+    def _shares(self) -> Array:
+        """Forces along and across, moment, and heat over the length rolled, over the load (4, k)."""
+        loads = self.largest_load * SIZES**3
+        found = [self.at(load) for load in loads.tolist()]
+        return np.array([(*forces_of(each), each.work) for each in found]).T / loads
+
+    def follow(self, force: Array) -> Array:
+        """Forces on the first body along and across, N, and moment, N m (3, ...), of a normal force (...), N.
+
+        Zero where there is none.
+        """
+        return np.stack([self._followed(force, shares) for shares in self._shares[:3]])
+
+    def power(self, force: Array) -> Array:
+        """What friction turns into heat under a normal force (...), N, in W."""
+        return self.speed * self._followed(force, self._shares[3])
+
+    def _followed(self, force: Array, shares: Array) -> Array:
+        load = np.maximum(force, 0.0)
+        return load * np.interp(np.cbrt(load / self.largest_load), SIZES, shares)
+
+
 @dataclass(frozen=True, eq=False)
-class CreepingBodies:
+class CreepingBodies(SteadyRolling):
     """Two smooth bodies that roll with creepages that are given.
 
     Parameters
@@ -350,11 +390,6 @@ class CreepingBodies:
         Rolling speed, m/s.
     largest_load : float
         N.
-
-    Notes
-    -----
-    Quasi-steady: the load changes little while a place passes through the contact, so that waves of the force
-    are long against it, v/f > 2a. The pressure is that of smooth bodies without friction.
     """
 
     rolling: FrictionalHalfSpace
@@ -372,28 +407,6 @@ class CreepingBodies:
         contact = self.rolling.half_space.solve(self.gap, load=load)
         with OutOfRangeWarning.ignored():
             return self.rolling.roll(contact, (xi, eta + across), spin, speed=self.speed)
-
-    @cached_property
-    def _shares(self) -> Array:
-        """Forces along and across, and moment, over the load (3, k)."""
-        loads = self.largest_load * SIZES**3
-        return np.array([forces_of(self.at(load)) for load in loads.tolist()]).T / loads
-
-    def follow(self, force: Array) -> Array:
-        """Forces on the first body along and across, N, and moment, N m (3, ...), of a normal force (...), N.
-
-        Zero where there is none.
-        """
-        load = np.maximum(force, 0.0)
-        size = np.cbrt(load / self.largest_load)
-        return np.stack([load * np.interp(size, SIZES, shares) for shares in self._shares])
-
-    def power(self, forces: Array) -> Array:
-        """What forces and moment (3, ...) of steady rolling turn into heat, W: −V (F·ξ + M φ).
-
-        That of `SlidingContact.dissipated_power`, of like bodies; unlike ones slip by their pressure, too.
-        """
-        return -self.speed * np.tensordot(self.creepage, forces, axes=1)
 
     @cached_property
     def full_slip_load(self) -> float:

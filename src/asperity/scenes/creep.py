@@ -1,4 +1,7 @@
-"""Friction of a case under its working load and over states; how what rolls creeps, and a wheel squeals."""
+"""Friction of what rolls, bodies and balls: under the working load and in time; whether a wheel squeals."""
+
+from dataclasses import replace
+from operator import attrgetter
 
 import numpy as np
 
@@ -6,6 +9,7 @@ from asperity.arguments import Array, Complex
 from asperity.case.scene import Case
 from asperity.contact import creep
 from asperity.contact.friction import Friction, SlidingContact, cell_places
+from asperity.contact.hertz import Hertz
 from asperity.contact.solved import Contact
 from asperity.contact.tangential import FrictionalHalfSpace
 from asperity.errors import InputError, OutOfRangeWarning
@@ -15,9 +19,18 @@ from asperity.reduction.traction import TractionStates, middle_of, traction_stat
 from asperity.scenarios.reducing import LIGHTEST_STATE
 from asperity.scenarios.scene import PreparedCase
 from asperity.scenes import compute, schema
+from asperity.scenes.computed_bearing import ComputedBearing
 from asperity.scenes.observer import Observer
 from asperity.scenes.sideways import Sideways
-from asperity.schema import Values, declared
+from asperity.schema import Values, bearing, declared
+from asperity.speeds import speed_at
+from asperity.structures.bearing_creepage import RINGS, creepage_of
+from asperity.structures.bearing_friction import (
+    BallOnRaceway,
+    friction_of_balls,
+    rolling_speed,
+    torque_of,
+)
 from asperity.structures.squeal import (
     FREE_OF_AXLE,
     CreepingContact,
@@ -38,7 +51,7 @@ SOURCES = (
 
 def friction_of(case: Case) -> Friction:
     """What a case says of friction."""
-    return Friction(case.contact.friction, case.creep.kinetic, case.creep.falling_velocity)
+    return case.creep.law(case.contact.friction)
 
 
 def smooth_with_friction(of: PreparedCase, friction: Friction) -> tuple[FrictionalHalfSpace, Contact]:
@@ -99,28 +112,18 @@ def creep_group(computed: compute.Computed) -> Values:
             rows.append(np.mean([_facts(each) for each in states], axis=0) + missed)
             shown = states[-1] if shown is first else shown
     force = computed.stacked("contact_force")
-    x, y = cell_places(rolling.half_space)
     bodies = creep.CreepingBodies(rolling, shape.body, creepage, speed, max(float(force.max()), shape.load))
-    followed, (stick, slip, *forces) = bodies.follow(force), np.transpose(rows)
-    power = bodies.power(followed)
+    power = bodies.power(force)
     ways = schema.WAYS if "track" in computed.quantities else schema.WAYS_OFF_TRACK
     return {
         schema.ROLLING_WAY: ways,
-        schema.FRICTION_FORCE: np.moveaxis(followed[:2], 0, 2),
+        schema.FRICTION_FORCE: np.moveaxis(bodies.follow(force)[:2], 0, 2),
         schema.FRICTION_POWER: power,
         schema.FULL_SLIP_SHARE: np.mean((force > 0.0) & (force <= bodies.full_slip_load), axis=(1, 2)),
         schema.MEAN_FRICTION_POWER: power.mean(axis=(1, 2)),
         schema.CREEP_WAY: ways,
-        schema.FRICTION_SAMPLE: np.arange(len(rows)),
-        schema.STICK_AREA: np.maximum(stick, 0.0),
-        schema.SLIP_AREA: slip,
-        schema.SAMPLE_FRICTION: np.transpose(forces[:2]),
-        schema.SPIN_MOMENT: forces[2],
-        schema.SAMPLE_HEAT: bodies.power(np.array(forces)),
-        schema.CREEP_X: x[:, 0],
-        schema.CREEP_Y: y[0],
-        schema.TRACTION: np.hypot(*shown.traction),
-        schema.SLIP_VELOCITY: np.where(shown.sticks, 0.0, speed * np.hypot(*shown.slip)),
+        **_under_load(np.array(rows), speed),
+        **_seen(shown),
         schema.CREEPAGE: creepage,
         schema.FULL_SLIP_SCALE: bodies.full_slip_scale(shape.load),
         schema.FULL_SLIP_LOAD: bodies.full_slip_load,
@@ -139,8 +142,32 @@ def _wear(computed: compute.Computed, power: Array) -> Values:
 
 
 def _facts(found: SlidingContact) -> Array:
-    """Areas that stick and slip, forces and moment (5,)."""
-    return np.array((found.stick_area, found.slip_area, *creep.forces_of(found)))
+    """Areas that stick and slip, forces and moment, and heat over the length rolled (6,)."""
+    return np.array((found.stick_area, found.slip_area, *creep.forces_of(found), found.work))
+
+
+def _under_load(facts: Array, speed: float) -> Values:
+    """Lay out `_facts` of contacts under the working load (n, 6)."""
+    stick, slip, along, across, moment, work = facts.T
+    return {
+        schema.FRICTION_SAMPLE: np.arange(len(facts)),
+        schema.STICK_AREA: np.maximum(stick, 0.0),
+        schema.SLIP_AREA: slip,
+        schema.SAMPLE_FRICTION: np.stack([along, across], axis=1),
+        schema.SPIN_MOMENT: moment,
+        schema.SAMPLE_HEAT: speed * work,
+    }
+
+
+def _seen(found: SlidingContact) -> Values:
+    """Lay out the tractions of a contact, and how fast it slips where it does."""
+    x, y = cell_places(found.normal.half_space)
+    return {
+        schema.CREEP_X: x[:, 0],
+        schema.CREEP_Y: y[0],
+        schema.TRACTION: np.hypot(*found.traction),
+        schema.SLIP_VELOCITY: np.where(found.sticks, 0.0, found.speed * np.hypot(*found.slip)),
+    }
 
 
 def _squeal(computed: compute.Computed, bodies: creep.CreepingBodies) -> Values:
@@ -179,9 +206,68 @@ def _squeal(computed: compute.Computed, bodies: creep.CreepingBodies) -> Values:
     }
 
 
+# --- balls in their grooves, whose creepages are those of their rolling
+
+
+def ball_group(computed: ComputedBearing) -> Values:
+    """Lay out friction of balls under the static load and in time, and what torque it asks of the rings."""
+    case = computed.case
+    assert case.friction_law is not None
+    creepage = creepage_of(case.static)
+    at_rest = friction_of_balls(case.static, creepage, case.kinematics, case.friction_law)
+    speed = rolling_speed(computed.bearing, case.kinematics)
+    force = computed.stacked("contact_force").reshape(
+        len(computed.runs), len(RINGS), -1, len(computed.first.time)
+    )
+    rolled = np.where(force[:, :1] > 0.0, force, 0.0)  # by the inner ring, too
+    powers = list[Array]()
+    heaviest = list[SlidingContact]()
+    for number, ring in enumerate(RINGS):
+        loads = (case.static.inner_load, case.static.outer_load)[number]
+        spin = creepage.spin[number]
+        touching = np.where(np.isfinite(spin), loads, 0.0)
+        place = np.unravel_index(np.argmax(touching), touching.shape)
+        most = max(float(rolled[:, number].max()), float(touching.max()))
+        mean_spin = float((np.nan_to_num(spin) * touching).sum() / touching.sum())
+        balls = BallOnRaceway.of(computed.bearing, ring, case.friction_law, most, mean_spin, speed)
+        powers.append(balls.power(rolled[:, number]))
+        heaviest.append(replace(balls, spin=float(spin[place])).at(float(loads[place])))
+    facts = np.array([_facts(each) for each in heaviest])
+    facts[:, 2] = 0.0  # which was asked for along the path
+    fastest = np.concatenate(powers, axis=1)
+    power = fastest * speed_at(case.speed, computed.first.time) / float(case.speed)
+    return {
+        bearing.FRICTION_HEAT: at_rest.heat,
+        bearing.SLIPPING_SHARE: at_rest.slip_share,
+        bearing.BALL_SPIN_MOMENT: at_rest.spin_moment,
+        bearing.GYRATION: at_rest.gyration,
+        bearing.FRICTION_TORQUE: torque_of(fastest.mean(axis=2).sum(axis=1), case.kinematics),
+        schema.FRICTION_POWER: power,
+        schema.MEAN_FRICTION_POWER: power.mean(axis=(1, 2)),
+        schema.CREEP_WAY: schema.WAYS_OFF_TRACK,
+        **_under_load(facts, speed),
+        **_seen(max(heaviest, key=attrgetter("work"))),
+    }
+
+
+def _rubs(computed: ComputedBearing) -> bool:
+    return computed.case.friction is not None and isinstance(computed.case.contacts[0][0], Hertz)
+
+
 OBSERVER = Observer(
     "creep",
     [each for each in declared(schema) if each.condition.startswith(schema.CREEPS)],
     creep_group,
     sources=SOURCES,
+)
+OF_BALLS = Observer(
+    "creep_of_balls",
+    [
+        *(each for each in declared(bearing) if each.condition == bearing.RUBBING),
+        *(each for each in declared(schema) if each.condition == schema.CREEPS_OR_RUBS),
+    ],
+    ball_group,
+    needs=("bearing",),
+    asked_of=_rubs,
+    sources=SOURCES[:1],
 )

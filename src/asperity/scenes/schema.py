@@ -410,34 +410,49 @@ SLIP_FORCE = _side_fact("slip_force", "N", "coefficient of friction times the st
 # --- creep and friction
 
 CREEPS = "where [creep] gives a creepage"
+CREEPS_OR_RUBS = f"{CREEPS}, or a ball bearing has friction"
 _creep, _creep_fact = (
     partial(Entry, "creep", condition=CREEPS),
     partial(Attribute, "creep", condition=CREEPS),
 )
-_creeping = partial(_rolling, condition=CREEPS)
+_creeping, _rubbing = (partial(_rolling, condition=each) for each in (CREEPS, CREEPS_OR_RUBS))
+_rubbed = partial(_creep, condition=CREEPS_OR_RUBS)
 WAYS = "along", "to the field side"
 WAYS_OFF_TRACK = "along", "across"
 _WAY = "direction of a force on what rolls"
 _ON_ROLLING = "friction force on what rolls"
 _HEAT = "heat of friction"
-ROLLING_WAY, CREEP_WAY = (each("way", "1", _WAY) for each in (_creeping, _creep))
+ROLLING_WAY, CREEP_WAY = (each("way", "1", _WAY) for each in (_creeping, _rubbed))
 FRICTION_FORCE = _creeping("friction_force(law, contact, way, time)", "N", f"{_ON_ROLLING}, quasi-steady")
-FRICTION_POWER = _creeping("friction_power(law, contact, time)", "W", f"{_HEAT}, quasi-steady")
+FRICTION_POWER = _rubbing("friction_power(law, contact, time)", "W", f"{_HEAT}, quasi-steady")
 FULL_SLIP_SHARE = _creeping("full_slip_share(law)", "1", "share of the time in full slip, of all contacts")
-MEAN_FRICTION_POWER = _creeping("mean_friction_power(law)", "W", f"{_HEAT}, mean over time and contacts")
+MEAN_FRICTION_POWER = _rubbing("mean_friction_power(law)", "W", f"{_HEAT}, mean over time and contacts")
 _WEARS = f"{CREEPS}, and wear"
 _worn = partial(_rolling, condition=_WEARS)
 WORN_AREA = _worn("worn_area(law)", "m2", "area of the section that one passage of all contacts takes, mean")
 WEAR_DEPTH = _worn("wear_depth(law)", "m", "the same over the width of the smooth contact: its mean depth")
-FRICTION_SAMPLE = _creep("sample", "1", "contact under the working load: 0 of smooth bodies, then samples")
-STICK_AREA, SLIP_AREA = (_creep(f"{w}_area(sample)", "m2", f"area that {w}s") for w in ("stick", "slip"))
-SAMPLE_FRICTION = _creep("friction_force(sample, way)", "N", _ON_ROLLING)
-SPIN_MOMENT = _creep("spin_moment(sample)", "N m", "moment of friction on what rolls about the normal")
-SAMPLE_HEAT = _creep("friction_power(sample)", "W", _HEAT)
-CREEP_X = _creep("x", "m", "place along the contact, from the middle of its window")
-CREEP_Y = _creep("y", "m", "place across it; of a wheel to the field side")
-TRACTION = _creep("traction(x, y)", "Pa", "tangential traction of the first sample, or of smooth bodies")
-SLIP_VELOCITY = _creep("slip_velocity(x, y)", "m/s", "slip velocity of the first sample, or of smooth bodies")
+FRICTION_SAMPLE = _rubbed(
+    "sample",
+    "1",
+    "contact under the working load: 0 of smooth bodies, then samples; of a ball "
+    "bearing the most loaded ones, 0 of the inner ring, 1 of the outer one",
+)
+STICK_AREA, SLIP_AREA = (_rubbed(f"{w}_area(sample)", "m2", f"area that {w}s") for w in ("stick", "slip"))
+SAMPLE_FRICTION = _rubbed("friction_force(sample, way)", "N", _ON_ROLLING)
+SPIN_MOMENT = _rubbed("spin_moment(sample)", "N m", "moment of friction on what rolls about the normal")
+SAMPLE_HEAT = _rubbed("friction_power(sample)", "W", _HEAT)
+CREEP_X = _rubbed("x", "m", "place along the contact, from the middle of its window")
+CREEP_Y = _rubbed("y", "m", "place across it; of a wheel to the field side")
+TRACTION = _rubbed(
+    "traction(x, y)",
+    "Pa",
+    "tangential traction of the first sample, or of smooth bodies; in a bearing where most heat is",
+)
+SLIP_VELOCITY = _rubbed(
+    "slip_velocity(x, y)",
+    "m/s",
+    "slip velocity of the first sample, or of smooth bodies; in a bearing where most heat is",
+)
 CREEPAGE = _creep_fact("creepage", "JSON", "of what rolls: along, to the field side, spin in rad/m")
 FULL_SLIP_SCALE = _creep_fact("full_slip_scale", "1", "part of the creepages from which on all slips")
 FULL_SLIP_LOAD = _creep_fact("full_slip_load", "N", "load up to which all slips; infinite if that is any")

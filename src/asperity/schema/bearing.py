@@ -74,12 +74,6 @@ GYRATION = _rubbed(
 FRICTION_TORQUE = _rubbed(
     "friction_torque(law)", "N m", "torque that friction of all contacts asks of the rings, mean over time"
 )
-ROLLING_HEAT = _rolling(
-    "bearing_friction_power(law, time)",
-    "W",
-    "heat of friction of all contacts, quasi-steady",
-    condition=RUBBING,
-)
 _worn = partial(Entry, "bearing", condition="of a ball bearing with a wear_coefficient")
 RACEWAY_ANGLE = _worn("raceway_angle", "rad", "place around a raceway, from the radial load")
 WEAR_RATE = _worn(

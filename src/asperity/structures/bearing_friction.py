@@ -1,14 +1,13 @@
 """Friction of the balls of a bearing: heat and torque where contacts stick and slip in their grooves."""
 
 import math
-import warnings
 from dataclasses import dataclass
 
 import numpy as np
 
-from asperity.arguments import Array, not_negative
-from asperity.contact.creep import SIZES
-from asperity.contact.friction import SlidingContact, cell_places
+from asperity.arguments import Array
+from asperity.contact.creep import SteadyRolling
+from asperity.contact.friction import Friction, SlidingContact, cell_places
 from asperity.contact.groove_creepage import contact_curvature
 from asperity.contact.halfspace import HalfSpace
 from asperity.contact.hertz import Hertz
@@ -27,8 +26,8 @@ DIGITS = 6
 """To which loads and spins of contacts, rad/m, are told apart."""
 
 
-@dataclass(frozen=True)
-class BallOnRaceway:
+@dataclass(frozen=True, eq=False)
+class BallOnRaceway(SteadyRolling):
     """A ball that rolls steadily in a groove, which drives or brakes it by no force along the path.
 
     Parameters
@@ -39,30 +38,44 @@ class BallOnRaceway:
         Of the surface that both share across, 1/m, see `asperity.contact.groove_creepage.contact_curvature`.
     bodies : (Material, Material)
         Ball and ring.
-    friction : float
+    friction : Friction
         Coefficient of friction.
+    largest_load : float
+        N.
+    spin : float
+        Spin creepage, rad/m.
+    speed : float
+        Rolling speed, m/s.
     """
 
     contact: Hertz
     curvature: float
     bodies: tuple[Material, Material]
-    friction: float
+    friction: Friction
+    largest_load: float
+    spin: float = 0.0
+    speed: float = 1.0
 
     @classmethod
-    def of(cls, bearing: BallBearing, ring: Ring, friction: float) -> "BallOnRaceway":
+    def of(
+        cls,
+        bearing: BallBearing,
+        ring: Ring,
+        friction: Friction,
+        largest_load: float,
+        spin: float = 0.0,
+        speed: float = 1.0,
+    ) -> "BallOnRaceway":
         """The balls of a bearing on one of its rings."""
         inner = ring == "inner"
         conformity = bearing.inner_conformity if inner else bearing.outer_conformity
-        groove = conformity * bearing.ball_diameter
-        return cls(
-            bearing.inner_contact if inner else bearing.outer_contact,
-            contact_curvature(0.5 * bearing.ball_diameter, groove),
-            (bearing.ball_material, bearing.material),
-            not_negative("friction", friction),
-        )
+        curvature = contact_curvature(0.5 * bearing.ball_diameter, conformity * bearing.ball_diameter)
+        contact = bearing.inner_contact if inner else bearing.outer_contact
+        bodies = bearing.ball_material, bearing.material
+        return cls(contact, curvature, bodies, friction, largest_load, spin, speed)
 
-    def roll(self, load: float, spin: float = 0.0) -> SlidingContact:
-        """The contact under a load, N, with a spin creepage, rad/m; the ball is the first body.
+    def at(self, load: float) -> SlidingContact:
+        """The contact under a load, N; the ball is the first body.
 
         Its creepage is that in the middle: √(ξ/χ) across are the lines of pure rolling.
         """
@@ -74,20 +87,14 @@ class BallOnRaceway:
         rolling = FrictionalHalfSpace(space, self.bodies, self.friction)
         # surfaces run against the path: a ball that is ahead in the middle has a creepage below zero there
         bow = -self.curvature / (2.0 * self.contact.radius_x)
-        with warnings.catch_warnings():  # that a ball pivots in its groove is what is asked for
-            warnings.filterwarnings("ignore", "A spin of", OutOfRangeWarning)
+        with OutOfRangeWarning.ignored():  # that a ball pivots in its groove is what is asked for
             return rolling.roll(
-                space.solve(gap, load=load), spin=spin, creepage_curvature=bow, force=(0.0, None)
+                space.solve(gap, load=load),
+                spin=self.spin,
+                creepage_curvature=bow,
+                force=(0.0, None),
+                speed=self.speed,
             )
-
-    def work(self, loads: Array, spin: float = 0.0) -> Array:
-        """Heat over the length rolled (...), N, under loads (...), N, between some that are solved."""
-        largest = float(loads.max(initial=0.0))
-        if not largest > 0.0:
-            return np.zeros(loads.shape)
-        shares = [self.roll(load, spin).work / load for load in (largest * SIZES**3).tolist()]
-        pressed = np.maximum(loads, 0.0)
-        return pressed * np.interp(np.cbrt(pressed / largest), SIZES, shares)
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,7 +120,7 @@ class BearingFriction:
 
 
 def friction_of_balls(
-    loaded: LoadedBearing, found: BearingCreepage, turning: Kinematics, friction: float
+    loaded: LoadedBearing, found: BearingCreepage, turning: Kinematics, friction: Friction
 ) -> BearingFriction:
     """Find what friction does between the balls of a loaded bearing and its rings, in steady rolling.
 
@@ -125,7 +132,7 @@ def friction_of_balls(
         How its balls slide, as `asperity.structures.bearing_creepage.creepage_of` has it.
     turning : Kinematics
         What turns how fast.
-    friction : float
+    friction : Friction
         Coefficient of friction.
 
     Returns
@@ -139,13 +146,13 @@ def friction_of_balls(
     friction carries, which are left out of the tractions, as are forces across by which a ball gyrates.
     """
     speed = rolling_speed(loaded.bearing, turning)
-    solved = [_on_ring(loaded, found, ring, friction) for ring in RINGS]
+    solved = [_on_ring(loaded, found, ring, friction, speed) for ring in RINGS]
     work, slip_share, moment = np.moveaxis(np.array(solved), -1, 0)
     of = loaded.bearing
     radius = 0.5 * of.ball_diameter
     momentum = 0.4 * of.ball_mass * radius**2 * 2.0 * math.pi * turning.spin
     gyrating = momentum * 2.0 * math.pi * abs(turning.cage) * np.sin(np.abs(found.axis))
-    held = friction * (loaded.inner_load + loaded.outer_load) * radius
+    held = np.asarray(friction.static) * (loaded.inner_load + loaded.outer_load) * radius
     gyration = np.where(np.isnan(found.axis), np.nan, np.inf)
     np.divide(gyrating, held, out=gyration, where=held > 0.0)
     return BearingFriction(speed * work, slip_share, moment, gyration)
@@ -164,18 +171,19 @@ def torque_of(heat: Array, turning: Kinematics) -> Array:
     return heat / (2.0 * math.pi * abs(turning.inner - turning.outer))
 
 
-def _on_ring(loaded: LoadedBearing, found: BearingCreepage, ring: Ring, friction: float) -> Array:
+def _on_ring(
+    loaded: LoadedBearing, found: BearingCreepage, ring: Ring, friction: Friction, speed: float
+) -> Array:
     """Heat over the length rolled, N, share that slips and moment, N m, of contacts with a ring (m, Z, 3)."""
     number = RINGS.index(ring)
     loads = (loaded.inner_load, loaded.outer_load)[number]
-    ball = BallOnRaceway.of(loaded.bearing, ring, friction)
     known: dict[tuple[float, float], tuple[float, float, float]] = {}
     rows = np.full((*loads.shape, 3), np.nan)
     for place in zip(*np.nonzero(np.isfinite(found.sliding[number])), strict=True):
         load = float(f"{loads[place]:.{DIGITS}g}")
         spin = round(float(found.spin[number][place]), DIGITS)
         if (load, spin) not in known:
-            rolled = ball.roll(load, spin)
+            rolled = BallOnRaceway.of(loaded.bearing, ring, friction, load, spin, speed).at(load)
             slips = rolled.slip_area / rolled.normal.area
             known[load, spin] = rolled.work, slips, abs(rolled.moment)
         rows[place] = known[load, spin]

@@ -9,12 +9,12 @@ from asperity.arguments import Array
 from asperity.reporting import data, headline, panels
 from asperity.reporting.chart import BLUE, MUTED, VERMILLION, Axis, Drawn, Line, Note, Panel
 from asperity.reporting.figure import Lines, Of, field, figure
-from asperity.reporting.tables import ReportTable, in_digits, number_cells, table, text_cells
+from asperity.reporting.tables import Cell, ReportTable, in_digits, number_cells, table, text_cells
 from asperity.reporting.texture_figures import map_panel
 from asperity.scenes import schema
 from asperity.scenes.figures import force
 from asperity.scenes.figures.measured import over_bands
-from asperity.schema import rolling, spectra
+from asperity.schema import bearing, rolling, spectra
 from asperity.structures.squeal import FREE_OF_AXLE
 from asperity.written_numbers import count_of, rounded
 
@@ -144,10 +144,12 @@ def stick_and_slip(tree: DataTree, lines: Lines) -> Drawn:
         scale = (f"{name} / {unit}", 0.0, float(values.max()) or 1.0)
         shown = np.where((traction > 0.0) & (values > 0.0), values, np.nan)
         yield map_panel(lines.at, y, shown, scale, title=name, height=4.1, beside=name != "traction")
-    yield (
-        "The first sample, or smooth bodies, under the working load. What has traction and no slip "
-        "velocity sticks."
-    )
+    which = "The first sample, or smooth bodies, under the working load."
+    if data.is_of_bearing(tree):
+        which = "The contact that makes more heat of the two most loaded ones of both rings, at rest."
+    yield f"{which} What has traction and no slip velocity sticks."
+    if not data.present(tree, FRICTION):  # creepages that follow from the rolling, not from the case
+        return
     # where full slip begins, by creepage and by load
     share, load = (data.number(tree, each) for each in (schema.FULL_SLIP_SCALE, schema.FULL_SLIP_LOAD))
     begins = "is not reached" if share is None else f"begins at {rounded(share)} times these creepages"
@@ -287,26 +289,39 @@ CREEP = stick_and_slip, friction_force, squeal
 def friction_table(tree: DataTree) -> ReportTable:
     """Stick, forces and heat of each contact under the working load, then by each law as means over time."""
     laws = data.held_laws(tree, schema.MEAN_FRICTION_POWER)
-    area = (schema.STICK_AREA, schema.SLIP_AREA)
-    full = data.values(tree, schema.FULL_SLIP_SHARE)
-    power = schema.SPIN_MOMENT, schema.SAMPLE_HEAT, schema.MEAN_FRICTION_POWER
-    stick, slip, moment, heat, mean_heat = (data.values(tree, entry) for entry in (*area, *power))
-    in_time = [data.of_law(tree, FRICTION, law) for law in laws]
-    samples = [f"sample {n}" for n in range(1, len(stick))]
-    none = np.full(len(laws), np.nan)
-    ways = data.words(tree, schema.CREEP_WAY)
-    forces = np.vstack([data.values(tree, schema.SAMPLE_FRICTION), np.mean(in_time, axis=-1)]).T
+    entries = schema.STICK_AREA, schema.SLIP_AREA, schema.SPIN_MOMENT, schema.SAMPLE_HEAT
+    stick, slip, moment, heat = (data.values(tree, entry) for entry in entries)
+    contacts = ["smooth", *(f"sample {n}" for n in range(1, len(stick)))]
+    follows = data.present(tree, FRICTION)
+    if not follows:
+        contacts = [f"{ring} ring" for ring in data.words(tree, bearing.RING)]
+
+    def column(of_contacts: Iterable[float], in_time: Iterable[float], form: str) -> list[Cell]:
+        """Numbers of contacts at rest, then of laws in time; the others are not known."""
+        at_rest = [*of_contacts] or [np.nan] * len(contacts)
+        return number_cells(at_rest + ([*in_time] or [np.nan] * len(laws)), form)
+
     columns = {
-        "contact": text_cells(["smooth", *samples, *(f"in time, {law}" for law in laws)]),
-        "sticks / %": number_cells([*(100.0 * stick / (stick + slip)), *none], "{:.1f}"),
-        "time in full slip / %": number_cells([*np.full_like(stick, np.nan), *(100.0 * full)], "{:.1f}"),
-        **{f"force {way}": number_cells(each, "N") for way, each in zip(ways, forces, strict=True)},
-        "spin moment": number_cells([*moment, *none], "N m"),
-        "heat": number_cells([*heat, *mean_heat], "W"),
+        "contact": text_cells([*contacts, *(f"in time, {law}" for law in laws)]),
+        "sticks / %": column(100.0 * stick / (stick + slip), (), "{:.1f}"),
     }
+    if follows:
+        full = data.values(tree, schema.FULL_SLIP_SHARE)
+        columns["time in full slip / %"] = column((), 100.0 * full, "{:.1f}")
+    forces = data.values(tree, schema.SAMPLE_FRICTION).T
+    for n, way in enumerate(data.words(tree, schema.CREEP_WAY)):
+        means = [data.of_law(tree, FRICTION, law)[n].mean() for law in laws] if follows else ()
+        columns[f"force {way}"] = column(forces[n], means, "N")
+    columns["spin moment"] = column(moment, (), "N m")
+    columns["heat"] = column(heat, data.values(tree, schema.MEAN_FRICTION_POWER), "W")
     if data.present(tree, schema.WEAR_DEPTH):
-        worn = [float(data.of_law(tree, schema.WEAR_DEPTH, law)) for law in laws]
-        columns["wear of a passage"] = number_cells([*np.full_like(stick, np.nan), *worn], "m")
+        columns["wear of a passage"] = column((), data.values(tree, schema.WEAR_DEPTH), "m")
+    if not follows:
+        note = (
+            "Friction on the balls, of the contact of each ring that carries most at rest; in time the mean "
+            "of all contacts, those that carry nothing among them."
+        )
+        return table("friction_table", "Friction", columns, note)
     note = (
         "Friction on what rolls: under the working load, and mean over time, forces at the first contact. "
         "Heat is what drives the creepages, −V (F·ξ + M φ). Wear is that of all contacts, as a mean depth "
