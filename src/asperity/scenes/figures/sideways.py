@@ -139,14 +139,20 @@ GROWTH = schema.GROWTH_RATE
 def stick_and_slip(tree: DataTree, lines: Lines) -> Drawn:
     """Traction and slip velocity of a contact, from above."""
     y = data.values(tree, schema.CREEP_Y)
+    slender = data.is_of_bearing(tree)
     traction, slip = (data.values(tree, entry) for entry in (schema.TRACTION, schema.SLIP_VELOCITY))
     for name, unit, values in (("traction", "MPa", 1e-6 * traction), ("slip velocity", "mm/s", 1e3 * slip)):
         scale = (f"{name} / {unit}", 0.0, float(values.max()) or 1.0)
         shown = np.where((traction > 0.0) & (values > 0.0), values, np.nan)
-        yield map_panel(lines.at, y, shown, scale, title=name, height=4.1, beside=name != "traction")
+        yield map_panel(
+            lines.at, y, shown, scale, equal=not slender, title=name, height=4.1, beside=name != "traction"
+        )
     which = "The first sample, or smooth bodies, under the working load."
-    if data.is_of_bearing(tree):
-        which = "The contact that makes more heat of the two most loaded ones of both rings, at rest."
+    if slender:
+        which = (
+            "The contact that makes more heat of the two most loaded ones of both rings, at rest; along and "
+            "across to scales of their own."
+        )
     yield f"{which} What has traction and no slip velocity sticks."
     if not data.present(tree, FRICTION):  # creepages that follow from the rolling, not from the case
         return
