@@ -50,6 +50,11 @@ _THOUSANDS = re.compile(
     r"[-+]?\d{1,3}(?:(?:\.\d{3})+,\d+|(?:,\d{3})+\.\d+|(?:['’]\d{3})+(?:[.,]\d+)?"
     r"|(?:[ \u00a0\u202f\u2009]\d{3})+[.,]\d+)"
 )
+_DECIMALS = re.compile(r"\d\.\d")
+_LAST = 1 << 14
+"""Characters at the end of a text by which it is told which commas separate columns."""
+_DECIMAL_COMMA = re.compile(r"(?:^|,) *[-+]?0\d|-0,")
+"""What nobody writes as whole numbers between commas: 05, or -0."""
 _APART = re.compile(r",\s")
 """A comma that is no decimal mark."""
 
@@ -205,6 +210,21 @@ def in_thousands(words: Iterable[str]) -> str:
     As ``"1.234,5"``, ``"1,234.5"`` or ``"1'234"``: what is one of them and what is two is not guessed.
     """
     return next((word for word in words if _THOUSANDS.fullmatch(word.strip())), "")
+
+
+def refuse_decimal_commas(content: str, source: str) -> None:
+    """Refuse numbers with commas that have commas between them, too: which is which is not guessed."""
+    lines = [line for line in content[-_LAST:].splitlines() if _PLAIN.fullmatch(line)]
+    if any(map(_DECIMALS.search, lines)):
+        return
+    for line in lines:
+        words = line.split()
+        between = ";" not in line and "\t" not in line
+        between &= any(word.count(",") > 1 or "," in (word[0], word[-1]) for word in words)
+        if between and _DECIMAL_COMMA.search(line):
+            received = f"lines such as {line.strip()[:40]!r}, with commas in numbers and between them"
+            remedy = "Export decimal points, or semicolons between columns."
+            raise InputError(source, received, "commas of one kind", remedy)
 
 
 def csv_text(heading: Sequence[str], rows: Iterable[Sequence[object]]) -> str:

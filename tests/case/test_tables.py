@@ -93,6 +93,8 @@ def test_lines_beside_each_other_have_their_energy_mean(tmp_path):
         ("levels", LEVELS + "0.1, 3\n0.08", "'0.08' in line 3; allowed: a table with the columns wave"),
         ("levels", LEVELS + "0.1, 3\n0.08, nan", "'0.08, nan' in line 3"),
         ("levels", "wavelength (kg), level (dB)\n0.1, 3", "'wavelength (kg)'; allowed: wavelength in m"),
+        ("levels", "wavelength (mm),level (dB)\n100,00,3,1\n80,00,2,2\n", "and between them"),
+        ("levels", "wavelength (mm),level (dB)\n100,3,1\n80,2,2\n", "3 numbers in line 2 below 2 titles"),
         ("levels", "100, 3\n80, 2", f"no heading; allowed: {ASKED}"),
         ("levels", "wavelength, level (dB)\n100, 3", f"heading 'wavelength, level (dB)'; allowed: {ASKED}"),
         ("levels", "level [dB], wavelength [mm]\n3, 100", "'level [dB]' for the wavelength; allowed: colu"),

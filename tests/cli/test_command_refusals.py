@@ -54,6 +54,7 @@ CASES = {
 OTHERS = {
     "metres.csv": "radius (mm), axial place (mm)\n" + "9e5, 0\n9e5, 1e5\n1e6, 1e5\n1e6, 0\n",
     "words.txt": "time\n1.0\nbroken\n",
+    "commas.csv": "t (s),a (m/s^2)\n0,0000,-0,31\n0,0001,0,05\n",
     "uneven.txt": "1 2\n3\n",
     "none.txt": "nothing here\n",
     "comma.txt": "0,5\n1,5\n2,75\n",
@@ -190,6 +191,7 @@ REFUSED = [
     (f"{HEARD} two.npz --array a", "received 3 columns; allowed: one of 1 to 3. Choose it with --column."),
     (f"{HEARD} two.npz --array b", "an array of shape (2, 2, 2)"),
     (f"{HEARD} words.txt", "words in line 3; allowed: numbers below the heading."),
+    (f"{HEARD} commas.csv", "commas in numbers and between them; allowed: commas of one kind. Export"),
     (f"{HEARD} uneven.txt", "uneven.txt: received 1 cell in line 2; allowed: 2."),
     (f"{HEARD} none.txt", "none.txt: received no numbers"),
     (f"{HEARD} bad.wav", "an intact wav file"),

@@ -160,6 +160,7 @@ test_it_says_what_is_wrong = refusals(
     (WIDE.replace("4,5,6,7", "0,5,6,7"), {}, "a vertical decay rate of 0; allowed: greater than 0"),
     (WIDE.replace("200 Hz", "220 Hz"), {}, "a column of 220 Hz; allowed: centres of one-third octaves"),
     (WIDE.replace("lateral", "up"), {}, "direction in decay_rates.csv: received 'up'; allowed: one of ver"),
+    ("frequency (Hz),decay rate (dB/m)\n100,0,04\n", {}, "commas in numbers and between them"),
     ("frequency (Hz), a\n100, 1\n", {"section": "B1"}, "decay_rates.csv: received the heading"),
     ("frequency (Hz), decay rate (dB/m)\n100, 4\n125, 6\n160, 6\n", {"section": "B1"},
      "the column 'section'; allowed: a file with a measurement in each line"),

@@ -104,6 +104,7 @@ test_files_that_hold_no_modes = refusals(
     ("words.csv", b"once upon a time", r"'once, upon, a, time' in line 1; allowed: a table of modes"),
     ("short.csv", b"frequency (Hz), 1\n0, 1\n1, 2\n", "no line of damping ratio"),
     ("long.csv", MODE, "no line of numbers"),
+    ("commas.csv", b"frequency (Hz),1\n0,05,1,5\n", "commas in numbers and between them"),
     ("row.csv", SHAPE + b"0, 1\n1\n", "'1' in line 5"),
     ("nan.csv", SHAPE + b"0, nan\n", "'0, nan' in line 4"),
     ("wide.csv", SHAPE + b"0, 1, 2\n1, 2, 3", "lines of 3 numbers; allowed: 2: a position, a shape of"),

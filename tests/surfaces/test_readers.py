@@ -325,6 +325,9 @@ UNEVEN = np.array([(0, 5e-6), (1.3e-6, 7e-6), (2e-6, 4e-6), (3e-6, 1e-6)]).tobyt
 REFUSED = [  # file, its contents, hints, and what the message says
     ("a.npz", SEVERAL, NM, "received b, z; allowed: exactly one"),
     ("a.npz", SEVERAL, NM | {"array": "q"}, "received 'q'; allowed: one of: p, b, z"),
+    ("a.npy", npy(HEIGHTS + 1j), NM, "complex128; allowed: real numbers. Keep numbers alone in the file"),
+    ("a.npz", zipped(("z.npy", npy(HEIGHTS + 1j))), NM, 'real numbers. Select another one, as in array="'),
+    ("a.mat", matlab(s=np.array([HEIGHTS, STORED], object)), NM, "received none; .* real numbers by itself"),
     ("a.nc", netcdf(unit=""), {}, "heights without a unit"),
     ("a.nc", netcdf(lateral=None), {}, "heights without a pixel size"),
     ("a.nc", netcdf(lateral=""), {}, r'x of a.nc:z: .* without a unit.*pixel_unit="um"'),

@@ -126,9 +126,19 @@ SAID = [
     ("1 2 3 4\n5 6 x 8\n", HINTS, "'5 6 x 8' in line 2"),
     ("only words\nand more\n", HINTS, "no line of numbers"),
     ("0 1\n1 2\n2.5 3\n", POINTS, "coordinates that are not uniform"),
-    ("0 1\n1 2\n1 3\n2 1\n", POINTS, "several points at one place"),
-    ("1 1\n1 2\n", POINTS, "fewer than two different coordinates"),
+    ("0 1\n1 2\n1 3\n2 1\n", POINTS, "several points at one place, one of them again as point 3; .*twice"),
+    ("1 1\n1 2\n", POINTS, "fewer than two different coordinates.*Check the file and its columns"),
     ("0 1\nnan 2\n", POINTS, "missing or infinite coordinates"),
+    ("3 0\n5.3 1\n1 2\n4.1 3\n9 4\n", POINTS, "not uniform.*Its second column is even: exchange both"),
+    # decimal commas between commas: four columns of whole numbers, as it seems
+    *(
+        (text, POINTS | {"pixel": "1 um"}, "commas in numbers and between them; .* or semicolons")
+        for text in (
+            "0,0000,-0,0123\n0,0731,1,2504\n",
+            "10,5, 1,25\n11,0, 1,07\n",
+            "x (um),z (um)\n10,5,-0,3\n11,0,1,9\n",
+        )
+    ),
     # three columns of heights are no points: they would lie on a diagonal
     ("0 1 2\n10 11 12\n20 21 22\n", HINTS, "3 points that would need a grid of 3 x 3"),
     ("\n".join(" ".join(map(str, p)) for p in SCATTERED), HINTS, r"regular grid|not uniform"),

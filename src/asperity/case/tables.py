@@ -31,7 +31,7 @@ from asperity.parameters import FROM_PYTHON, File, Key, Origin, Problems, Quanti
 from asperity.spectra import energy_sum
 from asperity.structures import support, track_parameters
 from asperity.structures.outline import checked_outline
-from asperity.text_files import lines_in, lines_of_cells, number_in, read_text
+from asperity.text_files import lines_in, lines_of_cells, number_in, read_text, refuse_decimal_commas
 from asperity.units import unit_in_brackets
 from asperity.written_numbers import count_of, rounded
 
@@ -320,6 +320,7 @@ def read_table(
             raise InputError(name_of(table), "no rows, or numbers that are not finite", allowed)
         return table
     content = read_text(table, table.name, allowed, largest=LARGEST_TABLE, latin=True)
+    refuse_decimal_commas(content, table.name)
     words: deque[list[str]] = deque(maxlen=2)
     heading: list[str] = []
     kept: list[int] = []
@@ -338,6 +339,10 @@ def read_table(
                 columns += columns[-1:] * (count - len(columns))
             titles = [_of(row, kept, len(cells)) for row in words]
             heading = heading_of(titles, [each.dimension for each in columns]) or _of(above, kept, len(cells))
+            if not heading and words and 1 < len(words[-1]) < len(cells):
+                received = f"{len(cells)} numbers in line {number} below {len(words[-1])} titles"
+                remedy = "Do commas stand in numbers and between them? Export decimal points, or semicolons."
+                raise InputError(name_of(table), received, allowed, remedy)
             short = not heading and words and len(cells) < len(words[-1])  # than what may be its heading
             if short or count != len(columns) or any(is_wide(row, columns[0]) for row in words):
                 _refuse_line(table, content, cells, number, columns, allowed)

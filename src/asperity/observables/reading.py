@@ -20,7 +20,7 @@ from asperity.observables import BUILT_IN, decay_rates, observable
 from asperity.observables.observable import Measured, Observable
 from asperity.parameters import FROM_PYTHON
 from asperity.spectra import a_weighting
-from asperity.text_files import lines_of_cells, number_in, read_text
+from asperity.text_files import lines_of_cells, number_in, read_text, refuse_decimal_commas
 from asperity.units import quantity, unit_in, unit_in_brackets
 from asperity.written_numbers import count_of, in_a_row
 
@@ -43,6 +43,7 @@ def read_measured(
     """
     allowed = "a table of what was measured, with units in its heading"
     text = read_text(path, path.name, allowed, largest=LARGEST_TABLE, latin=True)
+    refuse_decimal_commas(text, path.name)
     table = list(lines_of_cells(text))
     for number, (_, cells) in enumerate(table[:HEADING]):
         if (places := _axis_in(cells)) is not None and are_words(cells):

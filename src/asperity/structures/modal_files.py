@@ -14,7 +14,7 @@ from asperity.hdf5 import check_unpacked, is_hdf5, opened_netcdf
 from asperity.sandbox import Answer, sandboxed
 from asperity.structures.modal import ModalStructure
 from asperity.surfaces.readers.guards import hostile
-from asperity.text_files import lines_of_cells, number_in, read_text
+from asperity.text_files import lines_of_cells, number_in, read_text, refuse_decimal_commas
 from asperity.units import factor, unit_in_brackets
 from asperity.written_numbers import count_of, rounded
 
@@ -312,7 +312,9 @@ def _table_of_modes(file: Path, place: str, dimension: str) -> dict[str, Array]:
     found: dict[str, Array] = {}
     rows: list[list[float]] = []
     unit, residual = math.nan, math.nan
-    for number, cells in lines_of_cells(read_text(file, file.name, table_of, largest=LARGEST_FILE)):
+    content = read_text(file, file.name, table_of, largest=LARGEST_FILE)
+    refuse_decimal_commas(content, file.name)
+    for number, cells in lines_of_cells(content):
         values = [_cell(cell) for cell in cells]
         words = next((i for i, value in enumerate(values) if not math.isnan(value)), len(cells))
         heading = " ".join(cells[:words])

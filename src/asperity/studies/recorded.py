@@ -17,7 +17,15 @@ from asperity.errors import InputError
 from asperity.studies import kept_signals, rates
 from asperity.studies.times import Clock, clock_of, doubt_rate, rate_beside
 from asperity.surfaces.readers import arrays, guards, matlab, text
-from asperity.text_files import blocks_of_lines, even_rows, lines_of_cells, number_in, read_text, separator_in
+from asperity.text_files import (
+    blocks_of_lines,
+    even_rows,
+    lines_of_cells,
+    number_in,
+    read_text,
+    refuse_decimal_commas,
+    separator_in,
+)
 from asperity.wave_files import chunks_of, told_scale
 from asperity.written_numbers import count_of, rounded
 
@@ -225,6 +233,7 @@ _DECIMAL_COMMA = re.compile(r"^[ \t]*(?:[-+]?\d+,0\d|-0,\d)\d*[ \t]*\r?$", re.MU
 def _of_text(file: Path) -> tuple[Array, list[str]]:
     """Numbers of a table, below lines of words, of which the last may be titles of its columns."""
     content = read_text(file, file.name, "a table of numbers", largest=LARGEST_TEXT, latin=True)
+    refuse_decimal_commas(content, file.name)
     if "." not in content and _DECIMAL_COMMA.search(content):
         content = content.replace(",", ".")
     numbers = array("d")

@@ -79,7 +79,9 @@ def plain_word(name: str) -> str:
 def only_one(names: list[str], source: str, what: str = "heights") -> str:
     """Return the only array's name that could be meant, or raise an `InputError` that lists the choice."""
     likely = [name for name in names if name.lower() not in COORDINATES] or names[::-1]
-    remedy = advice("array", likely[0], "Choose one, as in", "Keep one in the file.") if names else ""
+    remedy = "Save it as an array of real numbers by itself, in no cell."
+    if names:
+        remedy = advice("array", likely[0], "Choose one, as in", "Keep one in the file.")
     named = f"arrays of {what} in {source}"
     received = listed(names) or "none"
     require(len(names) == 1, named, received, "exactly one", remedy)

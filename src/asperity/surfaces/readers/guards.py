@@ -157,9 +157,14 @@ def surfaces_of(array: NDArray[Any], spacing: tuple[float, float], source: str) 
     if array.ndim == 1 or (array.ndim == 2 and array.shape[1] == 1):
         return [Profile(array.ravel(), spacing[0], source)]
     allowed = "1 (a line), 2 (a map) or 3 (an ensemble of maps) axes, none empty"
-    remedy = advice("array", "name", "Select one, as in", "Keep one map or line in the file.")
+    remedy = _of_several(source, "Select one", "Keep one map or line in the file.")
     require(array.ndim == 2, source, f"an array of shape {array.shape}", allowed, remedy)
     return [HeightMap(array, spacing, source)]
+
+
+def _of_several(source: str, lead: str, otherwise: str) -> str:
+    """Advise to name another array, where the source says which one of a file was read."""
+    return advice("array", "name", f"{lead}, as in", otherwise) if ":" in source else otherwise
 
 
 MARKED = 1e30
@@ -190,7 +195,7 @@ def without_marks(array: NDArray[Any]) -> NDArray[Any]:
 
 def scaled(array: NDArray[Any], unit: float, source: str) -> Array:
     """Return real numbers times the length of their unit, m, as float64."""
-    remedy = advice("array", "name", "Select another one, as in", "Keep numbers alone in the file.")
+    remedy = _of_several(source, "Select another one", "Keep numbers alone in the file.")
     real_numbers = array.dtype.kind in "fiu"
     require(real_numbers, source, f"data of type {array.dtype}", "real numbers", remedy)
     numbers = array.astype(np.float64)

@@ -15,6 +15,8 @@ TOLERANCE = 0.05
 SPARSEST = 0.5
 """Smallest share of grid points that must be there."""
 RESAMPLE = "Resample the heights at a uniform spacing first."
+CHECK = "Check the file and its columns."
+DOUBLED = "Remove rows that stand twice; of lines one below the other keep one, or write them side by side."
 UNEVEN = "coordinates that are not uniform"
 MOST_DIGITS = 13
 """Digits beyond which a number in double precision was not rounded as it was printed."""
@@ -40,7 +42,13 @@ def line(x: Array, z: Array, source: str) -> tuple[Array, float]:
     Several heights (n, k) of each point stay beside each other. Refused are points that stand twice, or fill
     less than half of the line.
     """
-    index, spacing = places(x, f"x of {source}")
+    try:
+        index, spacing = places(x, f"x of {source}")
+    except InputError as error:
+        if error.received == UNEVEN and z.ndim == 1 and are_even(z):
+            remedy = "Its second column is even: exchange both, or name them in a heading."
+            raise InputError(error.what, UNEVEN, error.allowed, remedy) from None
+        raise
     return _gridded(index, z, (int(index.max()) + 1,), source), spacing
 
 
@@ -91,9 +99,11 @@ def _gridded(index: Index, z: Array, shape: tuple[int, ...], source: str) -> Arr
     received = f"{count_of(len(z), 'point')} that would need a grid of {' x '.join(str(n) for n in shape)}"
     dense = math.prod(shape) * SPARSEST <= len(z)
     require(dense, source, received, "points on a regular grid", RESAMPLE)
-    single = len(np.unique(index)) == len(index)
-    received = "several points at one place"
-    require(single, source, received, "one height per grid point", RESAMPLE)
+    rows = np.unique(index, return_index=True)[1]
+    if len(rows) < len(index):
+        again = int(np.setdiff1d(np.arange(len(index)), rows, assume_unique=True)[0])
+        received = f"several points at one place, one of them again as point {again + 1}"
+        raise InputError(source, received, "one height per grid point", DOUBLED)
     heights = np.full((math.prod(shape), *z.shape[1:]), np.nan)
     heights[index] = z
     return heights.reshape(*shape, *z.shape[1:])
@@ -169,7 +179,7 @@ def places(coordinates: Array, what: str) -> tuple[Index, float]:
     order = np.argsort(given, kind="stable")
     rising = given[order]
     extent = float(rising[-1] - rising[0])
-    require(extent > 0.0, what, "fewer than two different coordinates", "at least two", RESAMPLE)
+    require(extent > 0.0, what, "fewer than two different coordinates", "at least two", CHECK)
     found = _places_of(rising, in_order=bool((order[1:] > order[:-1]).all()))
     allowed = f"coordinates at a uniform spacing (within {TOLERANCE} of it, or half of their last digit)"
     require(found is not None, what, UNEVEN, allowed, RESAMPLE)
@@ -284,4 +294,4 @@ def half_digits(coordinates: Array) -> Iterator[Array]:
 def _refuse_unknown(coordinates: Array, what: str) -> None:
     finite = np.isfinite(coordinates).all()
     received = "missing or infinite coordinates"
-    require(finite, what, received, "a coordinate for each point", RESAMPLE)
+    require(finite, what, received, "a coordinate for each point", CHECK)

@@ -36,6 +36,7 @@ from asperity.text_files import (
     lines_in,
     number_in,
     read_text,
+    refuse_decimal_commas,
 )
 from asperity.written_numbers import count_of
 
@@ -217,6 +218,7 @@ def _dialect(sample: list[str], decimal: str | None, source: str) -> Dialect:
         return Dialect(None, True) if decimal == "," else Dialect(",", False)
     words = [word for text in sample for word in text.split()]
     if "." in joined or any(w.count(",") > 1 or w.startswith(",") or w.endswith(",") for w in words):
+        refuse_decimal_commas(joined, source)
         return Dialect(",", False)
     if len(words) > len(sample) or not all("," in word for word in words):
         return Dialect(None, True)
