@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 
 import numpy as np
 import pytest
@@ -68,6 +69,14 @@ def test_a_run_does_not_differ_from_itself(first):
     np.testing.assert_array_equal(found.table["peak_force"][0], force.max("time"))
     np.testing.assert_allclose(found.table["rms_force"][0], force.std("time"))
     np.testing.assert_array_equal(found.table["contact_loss_share"][0], first["rolling/contact_loss_share"])
+
+
+@pytest.mark.parametrize("more", [0.0, 6.0])
+def test_the_same_difference_in_all_bands_is_told_once(first, more, monkeypatch):
+    """Not as '+6.0 dB (25 Hz) to +6.0 dB (25 Hz)'; here all bands of a short record say something."""
+    monkeypatch.setattr("asperity.reporting.comparison_page._sure", lambda table, run: True)
+    told = summary(comparison_of([first, louder(first, more)], ["a", "b"]))
+    assert re.search(rf"contact force level {more} dB in \d\d bands, {more} dB\(A\)", told.replace("+", ""))
 
 
 def test_a_weighted_total_of_two_bands():

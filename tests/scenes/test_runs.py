@@ -260,6 +260,8 @@ def test_the_filtered_linear_contact_is_linear():
 def test_what_new_prints_of_a_bearing_runs_and_says_which_part_is_heard(kind):
     tree = asperity.run(parse_case(template(kind)).with_(duration=0.05, settling=0.01))
     assert "% from the inner raceway" in tree.attrs["verdict"]
+    main = tree["rolling"]["law"].values[0]
+    assert ("; shares by areal." in tree.attrs["verdict"]) == (main != "areal")
     grades = {check["grade"] for check in json.loads(tree["contact"].attrs["validity"])}
     assert grades <= {"", "note"}
 

@@ -239,7 +239,7 @@ def _summary(table: xarray.Dataset, mean: xarray.Dataset) -> str:
     swept = " × ".join(f"{count} of {name}" for name, count in values.items())
     done = int(table["completed"].sum())
     count = table["completed"].size
-    told = swept if done == count else f"{swept}; {done} of {count} members completed"
+    told = swept if done == count else f"{swept}; {done} of {count_of(count, 'member')} completed"
     return f"{told}. {ends}" if (ends := study_figures.ends_in_words(mean, tables.LOUDNESS)) else told
 
 
@@ -367,12 +367,16 @@ def _print_messages(table: xarray.Dataset, *, left_out: bool) -> None:
     count = table["completed"].size
     for warning in json.loads(table.attrs["warnings"]):
         grade = warning.get("grade", "warning").capitalize()
-        say(f"{grade} ({warning['members']} of {count} members): {warning['message']}", err=True)
+        say(f"{grade} ({warning['members']} of {count_of(count, 'member')}): {warning['message']}", err=True)
     for failure in json.loads(table.attrs["failures"]):
         if left_out and failure["error"] == CaseError.__name__:
             continue  # the table of effects says so
         names = failure["members"]
-        say(f"Failed ({len(names)} of {count} members): {failure['message']}", err=True, lines=True)
+        say(
+            f"Failed ({len(names)} of {count_of(count, 'member')}): {failure['message']}",
+            err=True,
+            lines=True,
+        )
         for name in names[:MOST_NAMED]:
             say(f"  - {name}", err=True)
         if len(names) > MOST_NAMED:

@@ -100,7 +100,7 @@ def _velocity_words(of: ComparedRuns, run: int) -> str:
     velocity = of.table[BAND_VELOCITY.name].values[:, 0]
     change = of.table[f"{BAND_VELOCITY.name}_difference"].values[run, 0]
     told = [
-        f"{data.signed(less)} dB in {band} ({rounded(1e6 * first)} to {rounded(1e6 * own)} µm/s)"
+        f"{data.signed(less)} dB in {band} ({data.between(rounded(1e6 * first), rounded(1e6 * own))} µm/s)"
         for band, less, first, own in zip(
             of.table[JUDGED_BAND.name].values, change, velocity[0], velocity[run], strict=True
         )
@@ -122,11 +122,14 @@ def _level_words(of: ComparedRuns, name: str, run: int) -> str:
     if not told.size:
         return f"{title} {data.signed(weighted)} dB(A)" if np.isfinite(weighted) else ""
     band = of.table["band"].values
-    ends = [
-        f"{data.signed(change[i])} dB ({nominal_frequency(float(band[i]))})"
+    ends = {
+        nominal_frequency(float(band[i])): f"{data.signed(change[i])} dB"
         for i in (told[change[told].argmin()], told[change[told].argmax()])
-    ]
-    return f"{title} {' to '.join(ends)}, {data.signed(weighted)} dB(A)"
+    }
+    spread = " to ".join(f"{less} ({centre})" for centre, less in ends.items())
+    if told.size > 1 and len(set(ends.values())) == 1:
+        spread = f"{next(iter(ends.values()))} in {told.size} bands"
+    return f"{title} {spread}, {data.signed(weighted)} dB(A)"
 
 
 def _others_drawn(of: ComparedRuns) -> str:

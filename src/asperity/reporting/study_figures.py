@@ -183,12 +183,13 @@ def ends_in_words(table: xarray.Dataset, names: Sequence[str]) -> str:
         told.append(str(most := _largest(held, dim)))
         held = held.sel({dim: most})
     units = data.written_units(str(held.attrs["units"]))
-    ends = []
+    ends = {}
     for found in (held.argmin(...), held.argmax(...)):
         at = {str(dim): int(place) for dim, place in found.items()}
         where = ", ".join(f"{key} {data.typed_words(table[key])[n]}" for key, n in at.items())
-        ends.append(f"{float(held[at]):.1f} {units} at {where}")
-    return f"{capital(', '.join(told))}: from {ends[0]} to {ends[1]}."
+        ends[where] = f"{float(held[at]):.1f} {units}"
+    low, *high = (f"{level} at {where}" for where, level in ends.items())
+    return f"{capital(', '.join(told))}: {f'from {low} to {high[0]}' if high else low}."
 
 
 def _says_something(found: xarray.DataArray) -> bool:

@@ -25,7 +25,7 @@ from asperity.scenarios.prepared_bearing import (
 )
 from asperity.scenes.bearing_at_rest import DIRECTIONS
 from asperity.scenes.bearing_validity import bearing_findings
-from asperity.scenes.computed_bearing import ComputedBearing, compute_bearing, rolled_alone
+from asperity.scenes.computed_bearing import BY_PARTS, ComputedBearing, compute_bearing, rolled_alone
 from asperity.scenes.figures.sources import loudest
 from asperity.scenes.observer import observed
 from asperity.scenes.observers import OF_BEARINGS
@@ -131,6 +131,8 @@ def _verdict(case: BearingUnderLoad, heard: Values) -> str:
     )
     law = case.laws[0]
     first = f" at {rounded(math.degrees(case.sensors[0]))}°" if len(case.sensors) > 1 else ""
+    if law != BY_PARTS and "% from" in told:
+        told += f"; shares by {BY_PARTS}"
     lead = f"Radial velocity{first} by {law}: {told or 'no band is sampled'}"
     if not np.nan_to_num(velocities).any() and told:
         lead = f"Nothing vibrates by {law}: all {of.ELEMENT}s are carried alike, on surfaces without waves"

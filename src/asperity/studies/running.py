@@ -23,6 +23,7 @@ from asperity.studies.cluster import Heart
 from asperity.studies.definition import Member, Study, load_study, study_of
 from asperity.studies.member import Failure, compute_member
 from asperity.threads import THREADS, processors
+from asperity.written_numbers import count_of
 
 if TYPE_CHECKING:
     import xarray
@@ -295,7 +296,7 @@ def _outcomes(
             take(member, found)
         else:
             waiting.append(member)
-    what = f"study of {len(members)} members"
+    what = f"study of {count_of(len(members), 'member')}"
     report(len(results) + len(failures), len(members), what)
     with closing(compute(waiting)) as outcomes:
         for member, outcome in outcomes:
