@@ -340,7 +340,7 @@ def read_table(
             titles = [_of(row, kept, len(cells)) for row in words]
             heading = heading_of(titles, [each.dimension for each in columns]) or _of(above, kept, len(cells))
             if not heading and words and 1 < len(words[-1]) < len(cells):
-                received = f"{len(cells)} numbers in line {number} below {len(words[-1])} titles"
+                received = f"{count_of(len(cells), 'number')} in line {number} below {len(words[-1])} titles"
                 remedy = "Do commas stand in numbers and between them? Export decimal points, or semicolons."
                 raise InputError(name_of(table), received, allowed, remedy)
             short = not heading and words and len(cells) < len(words[-1])  # than what may be its heading
