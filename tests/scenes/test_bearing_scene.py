@@ -400,7 +400,7 @@ def test_raceways_wear_by_the_work_of_sliding_where_a_coefficient_is_given(runs)
 
 def test_friction_takes_less_heat_than_if_all_slipped_and_turns_the_rings_against_it(runs):
     """At rest; and in time under the forces of the run, whose torque hardly differs on even raceways."""
-    tree = runs(BEARING | {"friction": 0.1})
+    tree = runs(BEARING | {"friction": 0.1, "wear_coefficient": 1e-8})
     found = group(tree)
     assert "friction_heat" not in group(runs(BEARING))
     heat, most = found["friction_heat"].values, 0.1 * found["sliding_heat"].values
@@ -416,7 +416,10 @@ def test_friction_takes_less_heat_than_if_all_slipped_and_turns_the_rings_agains
     turns = as_case(BEARING).kinematics
     assert power.mean() / (2.0 * np.pi * turns.inner) == pytest.approx(torque, rel=1e-9)
     assert power.mean() == pytest.approx(np.nansum(heat, axis=(0, 2)).mean(), rel=0.1)
+    worn = 1e-8 / (0.1 * B6205.hardness) * np.nansum(heat, axis=2).mean(axis=1)
+    np.testing.assert_allclose(found["worn_volume_rate"], worn, rtol=1e-6)
     page = page_of(tree)
+    assert "by what slips with the friction of the case, where the groove wears most" in page
     assert "With the friction of the case, parts of a contact stick" in page
     assert f"ask the rings for {rounded(1e3 * torque)} N mm" in page
     assert "The contact that makes more heat of the two most loaded ones of both rings" in page

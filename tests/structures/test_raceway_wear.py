@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from asperity import BallBearing
+from asperity import BallBearing, Friction
 from asperity.contact.groove_creepage import conformal_creepage, sliding_across, sliding_speed
 from asperity.errors import InputError
 from asperity.structures.bearing_creepage import creepage_of
+from asperity.structures.bearing_friction import friction_of_balls
 from asperity.structures.raceway_wear import raceway_wear
 
 B6205 = BallBearing.named("6205")
@@ -117,3 +118,36 @@ def test_wear_grows_with_coefficient_and_speed_and_falls_with_hardness():
     np.testing.assert_allclose(found.depth, 2.0 * once, rtol=1e-6, atol=1e-9 * once.max())
     with pytest.raises(InputError, match="wear coefficient"):
         raceway_wear(loaded, B7205.kinematics(SPEED), 0.0)
+
+
+@pytest.mark.parametrize(("bearing", "load"), [(B6205, (300.0, 0.0)), (B7205, (200.0, 400.0))])
+def test_what_sticks_does_not_wear(bearing, load):
+    """Volume over k/H is the heat over the coefficient of friction; the most there is where all slips."""
+    loaded = bearing.loaded(*load, speed=SPEED)
+    turning = bearing.kinematics(SPEED, contact_angle=loaded.contact_angle)
+    most = raceway_wear(loaded, turning, COEFFICIENT)
+    found = raceway_wear(loaded, turning, COEFFICIENT, Friction(0.1))
+    heat = friction_of_balls(loaded, creepage_of(loaded), turning, Friction(0.1)).heat
+    of_rings = np.nansum(heat, axis=2).mean(axis=1)
+    np.testing.assert_allclose(found.volume, COEFFICIENT / bearing.hardness * of_rings / 0.1, rtol=1e-9)
+    assert np.all(found.volume < 0.99 * most.volume)
+    step = found.across[:, 1] - found.across[:, 0]
+    np.testing.assert_allclose(  # but for a cell at the rim
+        found.depth.sum(axis=2) * step[:, None], found.area, rtol=1.0 / 24.0, atol=2e-3 * found.area.max()
+    )
+    slippery = raceway_wear(loaded, turning, COEFFICIENT, Friction(5e-3))
+    np.testing.assert_allclose(slippery.volume, most.volume, rtol=0.015)
+    # but for a cell at the rim, and, with spin, for lines of pure rolling that no force drives
+    np.testing.assert_allclose(slippery.depth, most.depth, atol=0.1 * most.depth.max())
+
+
+def test_a_groove_wears_least_where_balls_roll_purely_and_stick():
+    """The middle of a contact slips, both sides do, and two lines between them stick: without spin alike."""
+    loaded = B6205.loaded(300.0)
+    found = raceway_wear(loaded, B6205.kinematics(SPEED), COEFFICIENT, Friction(0.1))
+    deepest = found.depth[1, found.depth[1].max(axis=1).argmax()]
+    np.testing.assert_allclose(deepest, deepest[::-1], atol=1e-3 * deepest.max())
+    half = loaded.semi_axes("outer")[1].max()
+    at = found.across[1] / half
+    assert deepest[np.abs(np.abs(at) - 0.4) < 0.1].min() < 0.1 * deepest.max()
+    assert deepest[np.abs(at) > 0.6].max() == deepest.max()

@@ -11,7 +11,7 @@ def wear_group(computed: ComputedBearing) -> Values:
     """Lay out how fast both raceways wear under the static load, at places around them."""
     case = computed.case
     assert case.wear_coefficient is not None
-    found = raceway_wear(case.static, case.kinematics, case.wear_coefficient)
+    found = raceway_wear(case.static, case.kinematics, case.wear_coefficient, case.friction_law)
     return {
         bearing.RACEWAY_ANGLE: found.angle,
         bearing.WEAR_RATE: found.depth.max(axis=2),

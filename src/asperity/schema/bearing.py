@@ -79,7 +79,7 @@ RACEWAY_ANGLE = _worn("raceway_angle", "rad", "place around a raceway, from the 
 WEAR_RATE = _worn(
     "wear_rate(ring, raceway_angle)",
     "m/s",
-    "depth that wears in a second where a groove wears most, if all of each contact slips",
+    "depth that wears in a second where a groove wears most; without friction as if all of a contact slips",
 )
 WORN_AREA_RATE = _worn(
     "worn_area_rate(ring, raceway_angle)", "m2/s", "area of a groove's section that wears in a second"

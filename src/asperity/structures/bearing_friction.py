@@ -1,11 +1,12 @@
 """Friction of the balls of a bearing: heat and torque where contacts stick and slip in their grooves."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
-from asperity.arguments import Array
+from asperity.arguments import Array, ArrayLike
 from asperity.contact.creep import SteadyRolling
 from asperity.contact.friction import Friction, SlidingContact, cell_places
 from asperity.contact.groove_creepage import contact_curvature
@@ -146,7 +147,7 @@ def friction_of_balls(
     friction carries, which are left out of the tractions, as are forces across by which a ball gyrates.
     """
     speed = rolling_speed(loaded.bearing, turning)
-    solved = [_on_ring(loaded, found, ring, friction, speed) for ring in RINGS]
+    solved = [facts_of_contacts(loaded, found, ring, friction, speed, _facts) for ring in RINGS]
     work, slip_share, moment = np.moveaxis(np.array(solved), -1, 0)
     of = loaded.bearing
     radius = 0.5 * of.ball_diameter
@@ -171,20 +172,36 @@ def torque_of(heat: Array, turning: Kinematics) -> Array:
     return heat / (2.0 * math.pi * abs(turning.inner - turning.outer))
 
 
-def _on_ring(
-    loaded: LoadedBearing, found: BearingCreepage, ring: Ring, friction: Friction, speed: float
+def facts_of_contacts(
+    loaded: LoadedBearing,
+    found: BearingCreepage,
+    ring: Ring,
+    friction: Friction,
+    speed: float,
+    facts: Callable[[SlidingContact], ArrayLike],
 ) -> Array:
-    """Heat over the length rolled, N, share that slips and moment, N m, of contacts with a ring (m, Z, 3)."""
+    """What a function says of all contacts with a ring in steady rolling (m, Z, ...), each solved once.
+
+    NaN of balls that do not touch both rings.
+    """
     number = RINGS.index(ring)
     loads = (loaded.inner_load, loaded.outer_load)[number]
-    known: dict[tuple[float, float], tuple[float, float, float]] = {}
-    rows = np.full((*loads.shape, 3), np.nan)
-    for place in zip(*np.nonzero(np.isfinite(found.sliding[number])), strict=True):
+    known: dict[tuple[float, float], Array] = {}
+    places = list(zip(*np.nonzero(np.isfinite(found.sliding[number])), strict=True))
+    told = list[Array]()
+    for place in places:
         load = float(f"{loads[place]:.{DIGITS}g}")
         spin = round(float(found.spin[number][place]), DIGITS)
         if (load, spin) not in known:
-            rolled = BallOnRaceway.of(loaded.bearing, ring, friction, load, spin, speed).at(load)
-            slips = rolled.slip_area / rolled.normal.area
-            known[load, spin] = rolled.work, slips, abs(rolled.moment)
-        rows[place] = known[load, spin]
+            balls = BallOnRaceway.of(loaded.bearing, ring, friction, load, spin, speed)
+            known[load, spin] = np.asarray(facts(balls.at(load)), dtype=float)
+        told.append(known[load, spin])
+    rows = np.full((*loads.shape, *np.shape(told[0])), np.nan)
+    for place, each in zip(places, told, strict=True):
+        rows[place] = each
     return rows
+
+
+def _facts(found: SlidingContact) -> tuple[float, float, float]:
+    """Heat over the length rolled, N, share that slips, and moment, N m, without sign."""
+    return found.work, found.slip_area / found.normal.area, abs(found.moment)

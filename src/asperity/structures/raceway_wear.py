@@ -1,4 +1,4 @@
-"""Wear of the raceways of a ball bearing by place: Archard's law for balls that slide in their grooves."""
+"""Wear of the raceways of a ball bearing by place: Archard's law where balls slip in their grooves."""
 
 import math
 from dataclasses import dataclass
@@ -6,13 +6,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from asperity.arguments import Array, NDArray, positive
+from asperity.contact.friction import Friction, SlidingContact, cell_places
 from asperity.contact.groove_creepage import contact_curvature, sliding_across
 from asperity.structures.ball_bearing import Kinematics
 from asperity.structures.bearing_creepage import RINGS, BearingCreepage, Ring, creepage_of
+from asperity.structures.bearing_friction import ROOM, facts_of_contacts, rolling_speed
 from asperity.structures.bearing_statics import LoadedBearing
 
 ACROSS = 81
 """Places across a contact at which depths are found."""
+SHARES = np.linspace(-1.0, 1.0, ACROSS)
+"""These places over its half axis."""
 IN_GROOVE = 241
 """Places across a groove, from end to end of what balls touch of it."""
 
@@ -42,8 +46,10 @@ class RacewayWear:
     volume: Array
 
 
-def raceway_wear(loaded: LoadedBearing, turning: Kinematics, coefficient: float) -> RacewayWear:
-    """Wear of both raceways of a loaded bearing that turns, if all of each contact slips: the most there is.
+def raceway_wear(
+    loaded: LoadedBearing, turning: Kinematics, coefficient: float, friction: Friction | None = None
+) -> RacewayWear:
+    """Wear of both raceways of a loaded bearing that turns.
 
     Parameters
     ----------
@@ -53,6 +59,8 @@ def raceway_wear(loaded: LoadedBearing, turning: Kinematics, coefficient: float)
         What turns how fast.
     coefficient : float
         Archard's k: volume that is worn times hardness, over load times sliding.
+    friction : Friction, optional
+        By which parts of a contact stick, and do not wear; without it all of each slips: the most there is.
 
     Returns
     -------
@@ -60,8 +68,9 @@ def raceway_wear(loaded: LoadedBearing, turning: Kinematics, coefficient: float)
 
     Notes
     -----
-    A contact that passes wears k/H ∫ p s dx off the raceway, with Hertz's pressure p, the size s of the
-    creepage of `asperity.structures.bearing_creepage` and the hardness H of the rings. A ring that stands
+    A contact that passes wears k/H ∫ p s dx off the raceway, with Hertz's pressure p, the size s of the slip,
+    without friction that of the creepage of `asperity.structures.bearing_creepage`, and the hardness H of the
+    rings; under one coefficient of friction µ its volume is k/(µ H) of the heat. A ring that stands
     still meets each ball at one place under the load of that place; one that turns meets it everywhere, and
     wears alike all around. Balls that do not touch both rings are left out. Spin is taken without sign: on
     which side of a contact it adds to sliding is not said.
@@ -70,33 +79,71 @@ def raceway_wear(loaded: LoadedBearing, turning: Kinematics, coefficient: float)
     azimuth = np.mod(loaded.azimuth, 2.0 * np.pi).reshape(-1)
     order = np.argsort(azimuth)
     found = creepage_of(loaded)
-    rings = [_worn(loaded, found, turning, ring, order) for ring in RINGS]
+    rings = [
+        _worn(loaded, turning, ring, order, _slid(loaded, found, turning, ring, friction)) for ring in RINGS
+    ]
     across, depth, area, volume = (np.array(each) for each in zip(*rings, strict=True))
     return RacewayWear(
         azimuth[order], across, over_hardness * depth, over_hardness * area, over_hardness * volume
     )
 
 
+def _slid(
+    loaded: LoadedBearing, found: BearingCreepage, turning: Kinematics, ring: Ring, friction: Friction | None
+) -> tuple[Array, Array]:
+    """∫ p s dx at places across (m, Z, ACROSS), N/m, and ∫ p s dA (m, Z), N; NaN without contact."""
+    number = RINGS.index(ring)
+    if friction is not None:
+        speed = rolling_speed(loaded.bearing, turning)
+        solved = facts_of_contacts(loaded, found, ring, friction, speed, _slid_of)
+        return solved[..., 1:], solved[..., 0]
+    of = loaded.bearing
+    contact = (of.inner_contact, of.outer_contact)[number]
+    groove = (of.inner_conformity, of.outer_conformity)[number] * of.ball_diameter
+    touching = np.isfinite(found.sliding[number])
+    loads = (loaded.inner_load, loaded.outer_load)[number]
+    load, spin = (np.where(touching, each, 0.0) for each in (loads, found.spin[number]))
+    along, across = (np.where(touching, each, 1.0) for each in loaded.semi_axes(ring))
+    curvature = contact_curvature(0.5 * of.ball_diameter, groove)
+    lines = sliding_across(load, (along, across), spin, curvature, contact.radius_x, SHARES)
+    return lines, found.sliding[number]
+
+
+def _slid_of(contact: SlidingContact) -> Array:
+    """∫ p s dA, N, and then ∫ p s dx at places across, N/m, of a contact that sticks and slips.
+
+    Slip of cells misses a part of the work, and is scaled to it.
+    """
+    space = contact.normal.half_space
+    cells = contact.normal.pressure * np.hypot(*contact.slip) * ~contact.sticks
+    scale = contact.work / contact.work_of_slip if contact.work_of_slip > 0.0 else 1.0
+    line = scale * space.spacing[0] * cells.sum(axis=0)
+    _, y = cell_places(space)
+    half_axis = 0.5 * space.shape[1] * space.spacing[1] / ROOM
+    # its surfaces run against the path, so that spin adds on the other side than to `sliding_across`
+    return np.array([line.sum() * space.spacing[1], *np.interp(half_axis * SHARES, y[0], line[::-1])])
+
+
 def _worn(
-    loaded: LoadedBearing, found: BearingCreepage, turning: Kinematics, ring: Ring, order: NDArray[np.intp]
+    loaded: LoadedBearing,
+    turning: Kinematics,
+    ring: Ring,
+    order: NDArray[np.intp],
+    slid: tuple[Array, Array],
 ) -> tuple[Array, Array, Array, float]:
     """Places across, and depth, area and volume of one ring over k/H, at places around in an order."""
     of = loaded.bearing
     number = RINGS.index(ring)
-    contact = (of.inner_contact, of.outer_contact)[number]
     groove = (of.inner_conformity, of.outer_conformity)[number] * of.ball_diameter
     angles = (loaded.inner_angle, loaded.outer_angle)[number]
-    loads = (loaded.inner_load, loaded.outer_load)[number]
     turns = (turning.inner, turning.outer)[number]
-    sliding = found.sliding[number]
+    lines, sliding = slid
     touching = np.isfinite(sliding)
-    load, angle, spin = (np.where(touching, each, 0.0) for each in (loads, angles, found.spin[number]))
-    along, across = (np.where(touching, each, 1.0) for each in loaded.semi_axes(ring))
-    shares = np.linspace(-1.0, 1.0, ACROSS)
-    curvature = contact_curvature(0.5 * of.ball_diameter, groove)
-    lines = sliding_across(load, (along, across), spin, curvature, contact.radius_x, shares)
-    places = groove * angle[..., None] + across[..., None] * shares
+    angle = np.where(touching, angles, 0.0)
+    across = np.where(touching, loaded.semi_axes(ring)[1], 1.0)
+    places = groove * angle[..., None] + across[..., None] * SHARES
     arc = np.linspace(places[touching].min(), places[touching].max(), IN_GROOVE)
+    lines = np.where(touching[..., None], lines, 0.0)
     contacts = zip(places.reshape(-1, ACROSS)[order], lines.reshape(-1, ACROSS)[order], strict=True)
     depth = np.array([np.interp(arc, at, line) for at, line in contacts])
     area = np.nan_to_num(sliding).reshape(-1)[order]

@@ -33,8 +33,11 @@ def raceway_wear(tree: DataTree, lines: Lines) -> chart.Drawn:
     volumes = data.values(tree, bearing.WORN_VOLUME_RATE) * 3600.0 * HOURS / 1e-9
     told = zip(data.words(tree, bearing.RING), volumes, strict=True)
     lost = " and ".join(f"{rounded(float(volume), 2)} mm³ of the {ring} ring" for ring, volume in told)
+    slips = "if all of each contact slips: the most there is"
+    if data.present(tree, bearing.FRICTION_HEAT):
+        slips = "by what slips with the friction of the case"
     yield (
-        "By Archard's law under the static load, if all of each contact slips: the most there is, where the "
-        f"groove wears most. In {HOURS:g} h of running so it is {lost}. A ring that stands still wears "
+        f"By Archard's law under the static load, {slips}, where the groove wears most. "
+        f"In {HOURS:g} h of running so it is {lost}. A ring that stands still wears "
         "where it is loaded; one that turns meets all loads everywhere."
     )
