@@ -197,17 +197,17 @@ def short(machine):
 
 
 KINDS = {
-    "1 to 10 s at 8 to 100 kHz": Machine.signal, "0.1 s": short, "volts of 16 bits": int16, "clipped": clipped,
-    "mains hum": hum, "gear mesh": gear, "two shafts": two_shafts, "another bearing on the shaft": foreign_bearing,
-    "looseness": looseness, "unbalance": unbalance, "fluting": fluting, "rub once in a turn": rub,
-    "flow noise": flow, "speed that varies by 2 %": varying_speed, "missing samples": dropouts,
-    "resampled": resampled,
+    "1 to 10 s at 8 to 100 kHz": Machine.signal, "0.1 s": short, "volts of 16 bits": int16,
+    "clipped": clipped, "mains hum": hum, "gear mesh": gear, "two shafts": two_shafts,
+    "another bearing on the shaft": foreign_bearing, "looseness": looseness, "unbalance": unbalance,
+    "fluting": fluting, "rub once in a turn": rub, "flow noise": flow,
+    "speed that varies by 2 %": varying_speed, "missing samples": dropouts, "resampled": resampled,
 }  # fmt: skip
 OFF = (0.95, 0.98, 0.99, 1.01, 1.02, 1.05)
 
 
 def asked(kinds, seed, count):
-    """Yield what is said of each machine: at its speed, at one that is told 1, 2 or 5 % wrong, at a wrong one."""
+    """Yield what is said of each machine: at its speed, told 1, 2 or 5 % wrong, and at a wrong speed."""
     for number, name in enumerate(KINDS):
         if name not in kinds:
             continue
@@ -252,7 +252,15 @@ def _said(signal, machine, factor):
 
 def table(rows) -> None:
     """Print by kind and speed how often a part is named rightly, wrongly, not, and the speed doubted."""
-    columns = "fault: rightly", "wrongly", "not", "speed doubted", "sound: a part named", "not", "speed doubted"
+    columns = (
+        "fault: rightly",
+        "wrongly",
+        "not",
+        "speed doubted",
+        "sound: a part named",
+        "not",
+        "speed doubted",
+    )
     print(f"| machine or record | speed | {' | '.join(columns)} |\n|---|---|{'---:|' * 7}")
     for kind in (*KINDS, "all"):
         for how in ("right", "near", "wrong"):
@@ -271,9 +279,8 @@ def table(rows) -> None:
         if own:
             mean = 100.0 * np.mean([row["confidence"] for row in own])
             right = sum(row["said"] == "rightly" for row in own)
-            print(
-                f"named, {100 * low:.0f} to {100 * high:.0f} % sure: {len(own)}, mean {mean:.0f} %, right {right}"
-            )
+            said = f"{100 * low:.0f} to {100 * high:.0f} % sure"
+            print(f"named, {said}: {len(own)}, mean {mean:.0f} %, right {right}")
 
 
 def main() -> None:

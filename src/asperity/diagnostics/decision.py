@@ -13,7 +13,6 @@ from asperity.diagnostics.envelopes import above_frequency
 from asperity.diagnostics.hypotheses import FINE, NEAR, RANGE, BearingRecord, Hypothesis, Tone, deepest_comb
 from asperity.diagnostics.kurtogram import Kurtogram, kurtogram
 from asperity.diagnostics.prominence import HARMONICS, LOWEST_PLACE
-from asperity.diagnostics.pure_tones import tones_alone
 from asperity.diagnostics.recording import MOST_SAMPLES, Recording, SignalPieces
 from asperity.progress import Progress, counted
 from asperity.written_numbers import rounded
@@ -264,7 +263,8 @@ def diagnose_together(
     require(rate > 2.0 * tone.order * told, "sampling rate of the signal", received, allowed, remedy)
     needed = 2.0 * LOWEST_PLACE / (tone.order * told)
     lines = f"the lines of the {part_name(part, element)} at {rounded(tone.order * told, 4)} Hz"
-    received = f"{rounded(duration)} s"
+    gaps = " without a gap" * (sum(each.size for each in stretches) < sum(np.size(each) for each in signals))
+    received = f"{rounded(duration)} s{gaps}"
     allowed = f"at least {rounded(needed)} s, to resolve {lines}"
     require(duration >= needed, "duration of the signal", received, allowed, "Record longer.")
     pieces = SignalPieces.of(stretches, longest, rate, told)
@@ -273,11 +273,7 @@ def diagnose_together(
     limits = band or _ringing_band(seen, rate, reached)
     sought = AROUND_LINES * HARMONICS * RANGE * told * max(1.0, *(each.highest for each in tones.values()))
     record = BearingRecord.of(pieces, rate, seen, limits, sought, HUM, progress)
-    alone = [
-        tones_alone(each, rate, clipped=recording.clipped > 0.0)
-        for recording in recordings
-        for each in recording.stretches
-    ]
+    alone = [each.tones_alone for each in recordings]
     if all(alone):
         silent = decided(record, (), tones, told)
         basis = Basis("nothing", silent.turns)

@@ -139,11 +139,11 @@ class Prominence:
     def lines_of(self, fundamental: float) -> tuple[NDArray[np.intp], Array]:
         """Places and amplitudes (h,) of the highest lines within one resolution of the harmonics of a
         comb."""
-        last = self.amplitude.size - WITHIN - 1
+        last = self.amplitude.size - 1
         order = np.arange(1, HARMONICS + 1)
         middle = np.rint(order * fundamental / self.step).astype(int)
         middle = middle[(middle >= LOWEST_PLACE) & (middle <= last)]
-        around = middle[:, None] + np.arange(-WITHIN, WITHIN + 1)
+        around = np.minimum(middle[:, None] + np.arange(-WITHIN, WITHIN + 1), last)
         place = np.take_along_axis(around, self.amplitude[around].argmax(axis=1)[:, None], axis=1)[:, 0]
         return place, self.amplitude[place]
 

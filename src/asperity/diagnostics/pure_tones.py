@@ -5,7 +5,7 @@ import numpy as np
 from scipy.fft import rfft
 
 from asperity.arguments import Array
-from asperity.diagnostics.recording import BLOCK
+from asperity.diagnostics.missing_samples import BLOCK, least_step
 from asperity.spectra import hann_window
 
 MOST_TONES = 5
@@ -16,8 +16,9 @@ SHARP = 4
 """Power of the Hann window: beside the lobe of a line, five places wide either way, it leaves next to
 nothing."""
 LOBE = 5
-BLOCKS = 16
-"""Parts of the spectrum, in the noisiest of which a record has its noise."""
+BLOCKS, WIDE = 16, 128
+"""Parts of the spectrum at most, in the noisiest of which a record has its noise, and places of each at
+least."""
 ROUNDING = 0.5
 """Rms of noise over the step of samples up to which it is that of rounding, which has 1/sqrt(12) and moves
 with the signal: noise that is as loud makes rounding independent of it."""
@@ -37,8 +38,9 @@ def tones_alone(signal: Array, rate: float, *, clipped: bool = False) -> tuple[f
     values = signal[:BLOCK] - signal[:BLOCK].mean()
     window = hann_window(values.size, centred=True) ** SHARP
     power = np.abs(rfft(values * window)) ** 2 / (window**2).sum()
-    noise = np.sqrt(max(np.median(part) for part in np.array_split(power, BLOCKS)) / np.log(2.0))
-    if not clipped and noise > ROUNDING * max(_step(signal), LEAST_STEP * float(values.std())):
+    parts = np.array_split(power, min(max(power.size // WIDE, 1), BLOCKS))
+    noise = np.sqrt(max(np.median(part) for part in parts) / np.log(2.0))
+    if not clipped and noise > ROUNDING * max(least_step(signal), LEAST_STEP * float(values.std())):
         return ()
     found = []
     all_of_them = power.sum()
@@ -47,8 +49,3 @@ def tones_alone(signal: Array, rate: float, *, clipped: bool = False) -> tuple[f
         found.append(at * rate / values.size)
         power[max(at - LOBE, 0) : at + LOBE + 1] = 0.0
     return tuple(found) if len(found) <= MOST_TONES else ()
-
-
-def _step(signal: Array) -> float:
-    """Step of the samples of a signal (n,), in its unit: what those that differ do so by at least."""
-    return float(np.diff(np.unique(signal[:BLOCK])).min(initial=np.ptp(signal)))

@@ -1,17 +1,18 @@
 """What is wrong with a recording, whatever it was of: samples that are missing, stand still, are clipped."""
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from asperity.arguments import Array, ArrayLike, positive, real_array, require
+from asperity.diagnostics.foretold import unforetold
+from asperity.diagnostics.missing_samples import BLOCK, Mask, Runs, begins_run, filled_in, runs
+from asperity.diagnostics.phase_jumps import lost_between
+from asperity.diagnostics.pure_tones import tones_alone
 from asperity.spectra import hann_window, quick_length
 from asperity.written_numbers import count_of, rounded
-
-Mask = NDArray[np.bool_]
 
 FEWEST = 64
 """Samples of a signal, at least."""
@@ -33,8 +34,10 @@ SLOW = 2**18
 """Samples of a piece from which on it is cut to a length that is quick to transform."""
 OFFSET = 1.0
 """Mean over the rms about it from which on it is told."""
-BLOCK = 2**16
-"""Samples that are looked at together: a record is not held beside itself."""
+HOLDS_TONES = 512
+"""Samples of a stretch, at least, by which it is known that it holds tones alone."""
+SELDOM = 0.5
+"""Times in a turn at most that something happens which is no blow of a part."""
 SAMPLE = 2**14
 """Samples that tell near what the median of a record is."""
 NEAR_MIDDLE = (0.48, 0.52)
@@ -53,11 +56,14 @@ class Recording:
         What is wrong with it, in sentences.
     clipped : float
         Share of its samples that lie at an end at which it is clipped.
+    tones_alone : tuple of float
+        Frequencies, Hz, of a record that holds a few tones wherever nothing is missing; none of others.
     """
 
     stretches: tuple[Array, ...]
     doubts: tuple[str, ...]
     clipped: float
+    tones_alone: tuple[float, ...] = ()
 
     @classmethod
     def of(cls, signal: ArrayLike, rate: float, still: float = np.inf) -> "Recording":
@@ -65,10 +71,13 @@ class Recording:
 
         What does not move for so long, s, is no signal: a channel that was stuck, or filled up.
         """
-        values, rate = _given(signal, rate)
-        values, missing, told_missing = _bridged(values)
+        measured, rate = _given(signal, rate)
+        values, left_out, told_missing = _bridged(measured)
         stuck, told_stuck = _stands_still(values, rate, still)
-        left_out = missing | stuck
+        straight, told_straight = _straight(measured, rate, still)
+        _leave_out(left_out, (*stuck, *straight))
+        lost, told_lost = _lost(values, left_out, rate, still)
+        _leave_out(left_out, lost)
         whole = values[~left_out] if left_out.any() else values
         allowed, remedy = "a signal that varies", "Is the sensor connected?"
         moves = whole.size > 0 and np.ptp(whole) > 0.0
@@ -78,9 +87,10 @@ class Recording:
         longest = f"{max(map(len, between))} samples without a gap at most"
         require(stretches, "signal", longest, f"at least {FEWEST} that vary")
         clipped, told_clipped = _clipped(whole)
-        told = (told_missing, told_stuck, _in_stretches(stretches, left_out, rate), told_clipped)
-        doubts = (*told, _offset(whole))
-        return cls(stretches, tuple(each for each in doubts if each), clipped)
+        told = (told_missing, told_stuck, told_straight, told_lost)
+        doubts = (*told, _in_stretches(stretches, left_out, rate), told_clipped, _offset(whole))
+        tones = _tones(_between(left_out | np.isnan(measured), measured), rate, clipped > 0.0)
+        return cls(stretches, tuple(each for each in doubts if each), clipped, tones)
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,7 +129,7 @@ class SignalPieces:
         for each in stretches:
             mean = float(each.mean())
             turns = each.size / rate * speed
-            reached = _reached(each, mean, max(int(0.5 * turns), 1)) if speed else np.inf
+            reached = _reached(each, mean, max(int(SELDOM * turns), 1)) if speed else np.inf
             parts = (each[n * size : (n + 1) * size] for n in range(each.size // size))
             cut += [(part, mean, reached) for part in parts]
         return cls(size, tuple(cut))
@@ -205,28 +215,9 @@ def _given(signal: ArrayLike, rate: float) -> tuple[Array, float]:
     return values, positive("sampling rate (Hz)", rate)
 
 
-def _runs(held: Mask) -> NDArray[np.intp]:
-    """First place of each run of a condition (n,), and the one behind its last, (runs, 2)."""
-    edges = np.flatnonzero(held[1:] != held[:-1]) + 1
-    first = [0] if held[0] else []
-    last = [held.size] if held[-1] else []
-    return np.concatenate([first, edges, last]).astype(np.intp).reshape(-1, 2)
-
-
-def _begins_run(held: Mask, length: int) -> Mask:
-    """Where a condition (n,) is held by so many in a row: most records have none, and millions of short
-    runs."""
-    done = 1
-    while done < length and held.any():
-        by = min(done, length - done)
-        held = held[: held.size - by] & held[by:]
-        done += by
-    return held if done >= length else np.zeros(1, dtype=bool)
-
-
 def _between(left_out: Mask, values: Array) -> list[Array]:
     """Stretches of values that are not left out."""
-    return [values[first:last] for first, last in _runs(~left_out)]
+    return [values[first:last] for first, last in runs(~left_out)]
 
 
 def _bridged(values: Array) -> tuple[Array, Mask, str]:
@@ -238,7 +229,7 @@ def _bridged(values: Array) -> tuple[Array, Mask, str]:
     values = values.copy()
     few = [
         (first, last)
-        for first, last in _runs(missing)
+        for first, last in runs(missing)
         if last - first <= BRIDGED and first > 0 and last < values.size
     ]
     for first, last in few:
@@ -249,27 +240,75 @@ def _bridged(values: Array) -> tuple[Array, Mask, str]:
     return values, np.isnan(values), told if count else ""
 
 
-def _stands_still(values: Array, rate: float, still: float) -> tuple[Mask, str]:
+def _stands_still(values: Array, rate: float, still: float) -> tuple[Runs, str]:
     """Where values do not move for so long, s, and what is told of that."""
-    stuck = np.zeros(values.size, dtype=bool)
     least = math.ceil(max(still * rate, FEWEST)) - 1 if still < values.size / rate else values.size
-    runs = _runs(_begins_run(values[1:] == values[:-1], least))
-    runs[:, 1] += least  # the last of them, which is like the one before it
-    for first, last in runs:
-        stuck[first:last] = True
-    if not len(runs):
-        return stuck, ""
-    first, last = runs[np.argmax(runs[:, 1] - runs[:, 0])]
+    found = runs(begins_run(values[1:] == values[:-1], least))
+    found[:, 1] += least  # the last of them, which is like the one before it
+    if not len(found):
+        return found, ""
+    first, last = found[np.argmax(found[:, 1] - found[:, 0])]
     when = f"for {rounded((last - first) / rate)} s, from {rounded(first / rate)} s on"
     where = f"at {rounded(values[first], 4)} {when}"
-    return stuck, f"The signal stands still {where}, as of a channel that is stuck: that is left out."
+    return found, f"The signal stands still {where}, as of a channel that is stuck: that is left out."
+
+
+def _straight(values: Array, rate: float, turn: float) -> tuple[Runs, str]:
+    """Where values are filled in by straight lines and cubics, and what is told of that."""
+    found = filled_in(values, max(values.size / (turn * rate), 1.0))
+    if not len(found):
+        return found, ""
+    longest = rounded((found[:, 1] - found[:, 0]).max() / rate, 2)
+    where = f"from {rounded(found[0, 0] / rate)} s on"
+    if len(found) > 1:
+        where = f"{len(found)} times, for {longest} s at most, first {where}"
+    else:
+        where = f"for {longest} s {where}"
+    told = f"The signal is held or on a smooth line {where}, as where samples were lost: that is left out."
+    return found, told
+
+
+def _lost(values: Array, left_out: Mask, rate: float, still: float) -> tuple[list[Array], str]:
+    """Where, of what is not left out, samples are missing that nothing marks, and what is told of that."""
+    turn = min(still * rate, values.size)
+    whole = [each for each in runs(~left_out) if each[1] - each[0] >= HOLDS_TONES]
+    jumps, other = list[Array](), list[Array]()
+    for first, last in whole:
+        stretch = values[first:last]
+        jumps += [each + first for each in lost_between(stretch, turn)]
+        other += [each + first for each in unforetold(stretch, stretch.size / turn)]
+    told = [
+        f"The phase of the loudest tone jumps {_places(jumps, rate)}: samples are missing there, unmarked.",
+        f"{_places(other, rate).capitalize()} the signal is not what its tones foretell, as where samples "
+        "were lost, or a sensor was knocked: that is left out.",
+    ]
+    return jumps + other, told[0] if jumps else told[1] if other else ""
+
+
+def _places(found: Sequence[Array], rate: float) -> str:
+    """Where stretches are, in words."""
+    first = f"at {rounded(found[0].mean() / rate)} s" if found else ""
+    return first if len(found) <= 1 else f"in {len(found)} places, first {first},"
+
+
+def _leave_out(left_out: Mask, found: Iterable[Array]) -> None:
+    """Mark stretches from a first place to that behind the last, in a mask (n,)."""
+    for first, last in found:
+        left_out[max(first, 0) : last] = True
+
+
+def _tones(whole: Sequence[Array], rate: float, clipped: bool) -> tuple[float, ...]:
+    """Tones that all stretches without a gap hold alone, Hz, by the longest; none where one holds more."""
+    known = sorted((each for each in whole if each.size >= HOLDS_TONES), key=len, reverse=True)
+    found = tones_alone(known[0], rate, clipped=clipped) if known else ()
+    return found if all(tones_alone(each, rate, clipped=clipped) for each in known[1:] if found) else ()
 
 
 def _in_stretches(stretches: Sequence[Array], left_out: Mask, rate: float) -> str:
     """What is told of a record with gaps."""
     if not left_out.any():
         return ""
-    first = _runs(left_out)[0, 0] / rate
+    first = runs(left_out)[0, 0] / rate
     lengths = ", ".join(rounded(each.size / rate) for each in stretches[:5])
     more = ", …" if len(stretches) > 5 else ""
     where = f"Samples are missing or left out, first at {rounded(first)} s"

@@ -1,0 +1,52 @@
+"""Places at which a signal that tones make is not what they foretell: samples lost there, clicks, a knock."""
+
+import numpy as np
+
+from asperity.arguments import Array
+from asperity.diagnostics.missing_samples import BLOCK, Runs, joined, runs
+
+ORDER = 11
+"""Samples from which the next one is foretold: two for each of five tones, and one for the mean."""
+PARTS, PART = 32, 20 * ORDER
+"""Parts of a signal, and samples of each: in the best foretold one nothing happens."""
+QUIET = 0.01
+"""Of the median size of the signal, that what is not foretold may have for tones to make it."""
+UNLIKE = 30.0
+"""Times the median of what is not foretold, from which on something happened."""
+
+
+def unforetold(values: Array, most: float) -> Runs:
+    """First place of each stretch of a signal (n,) that its tones do not foretell, and that behind its last.
+
+    None of a signal that more than a few tones make, nor where there are more than so many: those are blows.
+    """
+    parts = _parts(values)
+    weights = _foreteller(parts)
+    usual = float(np.median([np.abs(np.convolve(part, weights, "valid")) for part in parts]))
+    if usual > QUIET * float(np.median(np.abs(parts - np.mean(parts)))):
+        return joined([])
+    unlike = np.zeros(max(values.size - ORDER, 1), dtype=bool)
+    for first in range(0, values.size - ORDER, BLOCK):
+        part = values[first : first + BLOCK + ORDER]
+        missed = np.abs(np.convolve(part, weights, "valid"))
+        unlike[first : first + missed.size] = missed > UNLIKE * usual
+    stretches = joined([(first, last + ORDER) for first, last in runs(unlike)])
+    return stretches if len(stretches) <= most else joined([])
+
+
+def _parts(values: Array) -> Array:
+    """Parts of a signal (n,), evenly spread, (PARTS, samples)."""
+    firsts = np.linspace(0, max(values.size - PART, 0), PARTS).astype(int)
+    return np.array([values[first : first + PART] for first in firsts])
+
+
+def _foreteller(parts: Array) -> Array:
+    """Weights (ORDER + 1,) of samples, the last one first, by which what is foretold is taken off one."""
+    best, least = np.zeros(ORDER + 1), np.inf
+    for part in parts:
+        rows = np.lib.stride_tricks.sliding_window_view(part, ORDER + 1)
+        weights, *_ = np.linalg.lstsq(rows[:, :-1], rows[:, -1], rcond=None)
+        missed = float(np.square(rows[:, -1] - rows[:, :-1] @ weights).sum())
+        if missed < least:
+            best, least = np.append(-weights, 1.0), missed
+    return best[::-1]
