@@ -419,6 +419,17 @@ class BearingUnderLoad(AnyCase):
             yield InputError("speed", received, allowed)
         yield from self._problems_of_films()
         yield from self._problems_of_creep()
+        yield from self._problems_of_grooves()
+        yield from self._problems_of_faults()
+        yield from self._problems_of_envelope()
+        yield from self._problems_of_record()
+        for way in ("radial", "axial") if self.static.contact_angle else ("radial",):
+            if not any(getattr(keys, f"{way}_stiffness") for keys in (self.shaft, self.housing)):
+                received, allowed = "0 N/m of [shaft] and of [housing]", "one of them that holds its ring"
+                yield InputError(f"shaft.{way}_stiffness", received, allowed)
+
+    def _problems_of_grooves(self) -> Iterator[InputError]:
+        """Grooves of one arc."""
         of = self.bearing.bearing
         if isinstance(of, BallBearing) and of.arch_angle is not None:
             received = f"{rounded(math.degrees(of.arch_angle), 4)} deg"
@@ -429,7 +440,10 @@ class BearingUnderLoad(AnyCase):
             )
             allowed = "none of a bearing that runs, in grooves of one arc"
             yield InputError("bearing.arch_angle", received, allowed, remedy)
-        balls = of.balls
+
+    def _problems_of_faults(self) -> Iterator[InputError]:
+        """Faults on parts that are there."""
+        balls = self.bearing.bearing.balls
         for name, fault in self.faults.items():
             if fault.on is None:
                 allowed = fault.keys["on"].kind.allowed
@@ -438,6 +452,9 @@ class BearingUnderLoad(AnyCase):
                 element = fault.ELEMENT
                 allowed = f"1 to {balls}, as many {element}s as there are"
                 yield InputError(f"{name}.{element}", f"{fault.number}", allowed)
+
+    def _problems_of_envelope(self) -> Iterator[InputError]:
+        """A band of the envelope that is sampled, and wider than the fastest tone; pairs that do not fall."""
         for name in ("cage_slip", "envelope_band"):
             pair = getattr(self, name)
             if pair is not None and (len(pair) != 2 or pair[0] > pair[1]):
@@ -446,6 +463,14 @@ class BearingUnderLoad(AnyCase):
             received = f"up to {self.envelope_band[-1]:g} Hz"
             allowed = f"{0.5 * self.sampling_rate:g} Hz"
             yield InputError("envelope_band", received, f"at most half the sampling_rate, {allowed}")
+        tones = [self.kinematics.tone(part) for part in PARTS]
+        if self.envelope_band is not None and np.ptp(self.envelope_band) < 1.1 * max(tones):
+            received = f"a width of {np.ptp(self.envelope_band):g} Hz"
+            allowed = f"more than the fastest tone, {rounded(max(tones), 4)} Hz, and a tenth"
+            yield InputError("envelope_band", received, allowed, "Take a wider band.")
+
+    def _problems_of_record(self) -> Iterator[InputError]:
+        """A record in which every tone comes some times, and which can be computed."""
         tones = [self.kinematics.tone(part) for part in PARTS]
         turns = FEWEST * self.speed / min(tones)
         if covered(self.speed, self.duration) < turns:
@@ -456,14 +481,6 @@ class BearingUnderLoad(AnyCase):
             least = f"{1e3 * self.speed.reached(FEWEST_TURNS):.4g} ms"
             allowed = f"at least {least}, in which a run-up turns {FEWEST_TURNS:g} times"
             yield InputError("duration", written(self.duration, "s", "ms"), allowed)
-        if self.envelope_band is not None and np.ptp(self.envelope_band) < 1.1 * max(tones):
-            received = f"a width of {np.ptp(self.envelope_band):g} Hz"
-            allowed = f"more than the fastest tone, {rounded(max(tones), 4)} Hz, and a tenth"
-            yield InputError("envelope_band", received, allowed, "Take a wider band.")
-        for way in ("radial", "axial") if self.static.contact_angle else ("radial",):
-            if not any(getattr(keys, f"{way}_stiffness") for keys in (self.shaft, self.housing)):
-                received, allowed = "0 N/m of [shaft] and of [housing]", "one of them that holds its ring"
-                yield InputError(f"shaft.{way}_stiffness", received, allowed)
         steps = (self.duration + self.settling) / self.step * self.bearing.bearing.balls
         if steps > MOST_STEPS:
             received = f"{rounded(steps, 2)} time steps of balls"

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -67,42 +67,23 @@ def heard(
     require(tacho or tacho_reads is None, "--tacho-reads", f"'{tacho_reads}'", "--tacho COLUMN with it")
     element = keys.bearing.ELEMENT
     require(known != "roller" or element == known, "--known", known, "outer, inner or ball of a ball bearing")
-    told = float(keys.speed or 0.0)
     tones = keys.bearing.tones(axial=keys.axial > 0.0)
-    with progress_bar() as progress:
-        signals, sampled = _read(files, rate, progress, array=array, column=column)
-        turned: dict[str, Any] | None = None
-        if tacho is not None:
-            beside = zip(files, signals.values(), strict=True)
-            courses = [read_turned(*each, tacho, tacho_reads, array) for each in beside]
-            told = fitting_speed(courses, told)
-            signals = at_constant_speed(signals, courses, told)
-            sampled = next(iter(signals.values())).rate
-            turned = _turned(courses, told)
-        edges = _band(band, sampled)
-        told_of = progress if sum(each.values.size for each in signals.values()) >= MANY else None
-        judge = partial(
-            diagnostics.diagnose_together, rate=sampled, tones=tones, speed=told, band=edges,
-            fastest=keys.bearing.fastest, element=element,
-        )  # fmt: skip
-        singles = _one_by_one(signals, judge, told_of)
-        judged = [signals[name] for name in singles] or list(signals.values())
-        values = [each.values for each in judged]
-        diagnosis = judge(values, progress=told_of)
-    for name, single in singles.items():
-        say(f"{name}: {_length([signals[name]])}. {diagnostics.diagnosis_sentence(single)}")
-    title = f"All {len(judged)} together" if singles else next(iter(signals))
-    say(f"{title}: {_length(judged)}{_taken(diagnosis)}")
+    signals, singles, diagnosis, together, turned = _judged(
+        keys, files, tones, rate=rate, array=array, column=column, band=band, tacho=tacho,
+        tacho_reads=tacho_reads,
+    )  # fmt: skip
+    title = f"All {len(together)} together" if singles else next(iter(signals))
+    found = _lines_of(diagnosis.record.band.spectrum, tones, diagnosis)
+    verdict = diagnostics.diagnosis_sentence(diagnosis, "ball" if known == element else known)
+    _say_signals(signals, singles)
+    say(f"{title}: {_length(together)}{_taken(diagnosis)}")
     if singles:
         say(_agreement(singles))
-    struck = diagnosis.record.band.spectrum
-    found = _lines_of(struck, tones, diagnosis)
     _say_lines(found, tones, diagnosis)
     if faint := faint_lines(diagnosis):
         say(faint)
-    verdict = diagnostics.diagnosis_sentence(diagnosis, "ball" if known == element else known)
     if picture is not None:
-        _draw(keys, title, struck, found, tones, diagnosis, verdict, picture)
+        _draw(keys, title, found, tones, diagnosis, verdict, picture)
     say(verdict)
     return {
         **_told(diagnosis),
@@ -117,6 +98,58 @@ def heard(
         ],
         "verdict": verdict,
     }
+
+
+class _Judged(NamedTuple):
+    """Signals that were read, what each of several says alone, all together, and how fast all turned."""
+
+    signals: Signals
+    singles: dict[str, Diagnosis]
+    diagnosis: Diagnosis
+    together: list[Recorded]  # that say something alone, of which the diagnosis is
+    turned: dict[str, Any] | None
+
+
+def _judged(
+    keys: LoadKeys,
+    files: Sequence[Path],
+    tones: Mapping[str, Tone],
+    *,
+    rate: str | None,
+    array: str | None,
+    column: int | None,
+    band: str | None,
+    tacho: str | None,
+    tacho_reads: str | None,
+) -> _Judged:
+    """Read signals, over angle where a tacho tells how they turned, and judge them."""
+    told = float(keys.speed or 0.0)
+    with progress_bar() as progress:
+        signals, sampled = _read(files, rate, progress, array=array, column=column)
+        turned: dict[str, Any] | None = None
+        if tacho is not None:
+            beside = zip(files, signals.values(), strict=True)
+            courses = [read_turned(*each, tacho, tacho_reads, array) for each in beside]
+            told = fitting_speed(courses, told)
+            signals = at_constant_speed(signals, courses, told)
+            sampled = next(iter(signals.values())).rate
+            turned = _turned(courses, told)
+        edges = _band(band, sampled)
+        told_of = progress if sum(each.values.size for each in signals.values()) >= MANY else None
+        judge = partial(
+            diagnostics.diagnose_together, rate=sampled, tones=tones, speed=told, band=edges,
+            fastest=keys.bearing.fastest, element=keys.bearing.ELEMENT,
+        )  # fmt: skip
+        singles = _one_by_one(signals, judge, told_of)
+        together = [signals[name] for name in singles] or list(signals.values())
+        diagnosis = judge([each.values for each in together], progress=told_of)
+    return _Judged(signals, singles, diagnosis, together, turned)
+
+
+def _say_signals(signals: Signals, singles: Mapping[str, Diagnosis]) -> None:
+    """Print what each of several signals says alone."""
+    for name, single in singles.items():
+        say(f"{name}: {_length([signals[name]])}. {diagnostics.diagnosis_sentence(single)}")
 
 
 def _turned(courses: Sequence[Turned], told: float) -> dict[str, Any]:
@@ -224,7 +257,6 @@ def _told(diagnosis: Diagnosis) -> dict[str, Any]:
 def _draw(
     keys: LoadKeys,
     title: str,
-    struck: Spectrum,
     found: Mapping[str, LineFamily | None],
     tones: Mapping[str, Tone],
     diagnosis: Diagnosis,
@@ -236,7 +268,9 @@ def _draw(
     highest = REACH * HARMONICS * max(nominal.values())
     shown = {part: lines or _no_lines(nominal[part]) for part, lines in found.items()}
     faults = [each.part for each in diagnosis.parts]
-    drawn = envelope_group(["signal"], [struck], [shown], [faults], highest, "unit of the file")
+    drawn = envelope_group(
+        ["signal"], [diagnosis.record.band.spectrum], [shown], [faults], highest, "unit of the file"
+    )
     turning = keys.bearing.kinematics(diagnosis.speed, contact_angle=0.0)
     envelope = envelope_spectrum.drawn(tree(tones_group(turning) | drawn)).chart
     bands = kurtogram_panel(diagnosis.record.kurtogram, diagnosis.record.limits)

@@ -11,7 +11,7 @@ from asperity.arguments import Array, ArrayLike, finite_array, positive, require
 from asperity.laws.linear import Linear
 from asperity.laws.spec import Law
 from asperity.progress import Progress
-from asperity.rolling.driver import rest_of, roll_mechanism
+from asperity.rolling.driver import RolledMechanism, rest_of, roll_mechanism
 from asperity.rolling.ledger import Ledger
 from asperity.rolling.mechanism import Mechanism, RollingContact, Side
 from asperity.rolling.soundness import STILL, without_rounding
@@ -195,27 +195,38 @@ def roll_bearing(
     each = len(mechanism.contacts) // bearing.balls
     contacts = len(mechanism.contacts)
     mechanism = replace(mechanism, contacts=[*mechanism.contacts, *turning.driven_round(rotating)])
-    rows = [
-        mechanism.row(place, ring.towards(angle, way))
-        for place, ring in ((INNER, rings.inner), (OUTER, rings.outer))
-        for angle, way in AXES
-    ]
-    rows += [_row_of(mechanism, rings, bearing, sensor) for sensor in sensors]
     run = roll_mechanism(
         mechanism,
         turning.usual_load(*loads),
         time_step=time_step,
         duration=duration,
         settling=settling,
-        sensors=np.array(rows),
+        sensors=_rows_of(mechanism, rings, bearing, sensors),
         highest_frequency=highest_frequency,
         progress=progress,
         checkpoint=checkpoint,
     )
+    return _recorded(run, turning, contacts, each)
+
+
+def _rows_of(
+    mechanism: Mechanism, rings: BearingRings, bearing: AnyBearing, sensors: Sequence[Sensor]
+) -> Array:
+    """What reads the motion of both rings, the inner one first, and then of sensors."""
+    axes = [
+        mechanism.row(place, ring.towards(angle, way))
+        for place, ring in ((INNER, rings.inner), (OUTER, rings.outer))
+        for angle, way in AXES
+    ]
+    return np.array([*axes, *(_row_of(mechanism, rings, bearing, sensor) for sensor in sensors)])
+
+
+def _recorded(run: RolledMechanism, turning: "_Turning", contacts: int, each: int) -> RolledBearing:
+    """Record of a bearing, of so many contacts, `each` of a ball, before those that drive it round."""
     steps = run.contact_force.shape[1]
     reached = run.reached[:contacts]
     return RolledBearing(
-        np.asarray(time_step * np.arange(steps)),
+        np.asarray(turning.time_step * np.arange(steps)),
         turning.cage(range(turning.total + 1 - steps, turning.total + 1)),
         run.contact_force[INNER:contacts:each],
         run.contact_force[OUTER:contacts:each],
@@ -224,7 +235,7 @@ def roll_bearing(
         run.displacement[3:6],
         run.acceleration[6:],
         np.array([(of[:, 0].min(), of[:, 1].max()) for of in (reached[INNER::each], reached[OUTER::each])]),
-        run.softening[:contacts].reshape(bearing.balls, each)[:, : len(RINGS)].T,
+        run.softening[:contacts].reshape(-1, each)[:, : len(RINGS)].T,
         run.energy,
         run.unconverged_steps,
     )

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Any, cast
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 
@@ -131,34 +131,19 @@ def textures_of(case: Case) -> Textures:
         maps = strips = _cut(case, strip, before)
         sampled = f"{count_of(len(strips), 'sample')} cut from the path"
     line = middle_line(over.strip)  # of a measured one, the run may end before the grid
-    drawn = {"surface": over.draw, case.ROLLING: turn.draw}
-    corrugated = ""
-    on_path = np.zeros(len(line))
-    wave = case.surface.corrugation_wavelength
-    size = case.surface.corrugation
-    if size is not None and wave is not None:
-        how: dict[str, Any] = {
-            "bandwidth": case.surface.corrugation_bandwidth,
-            "seed": seeds[2],
-            "before": before,
-        }
-        on_path = corrugation(len(line), spacing, wavelength=wave, amplitude=size, **how).heights
-        if (width := case.surface.corrugation_bandwidth) is not None:
-            drawn["corrugation"] = f"{wave:.6g} m, {width:g} octaves, seed {seeds[2]}"
-            here = rounded(1e6 * float(on_path[before : before + recorded].std()))
-            stated = rounded(1e6 * size / math.sqrt(2.0))
-            corrugated = f"corrugation: {here} µm rms over this record, {stated} µm in the long run"
+    waves = _corrugation(case, len(line), before, recorded, seeds[2])
+    drawn = {"surface": over.draw, case.ROLLING: turn.draw, "corrugation": waves.draw}
     around = turn.heights[:, turn.heights.shape[1] // 2]
     along = np.arange(len(line)) - before
-    parts = {"rail": line + on_path, "wheel": around[along % len(around)]}
+    parts = {"rail": line + waves.heights, "wheel": around[along % len(around)]}
     lines = {name: body.lines for name, body in (("rail", over), ("wheel", turn)) if body.lines}
     origins = (
         sampled,
         f"path: {over.origin}",
         f"{case.ROLLING}: {turn.origin}" * bool(turn.origin),
-        corrugated,
+        waves.told,
     )
-    path = raised(strip, on_path) if on_path.any() else strip
+    path = raised(strip, waves.heights) if waves.heights.any() else strip
     textures = Textures(
         maps,
         strips,
@@ -175,6 +160,31 @@ def textures_of(case: Case) -> Textures:
         drawn={name: draw for name, draw in drawn.items() if draw},
     )
     return replace(textures, **_defects(case, 0, textures))
+
+
+class _Corrugation(NamedTuple):
+    """Corrugation along the path: its heights (rows,), m, how it is drawn, and its rms in words."""
+
+    heights: Array
+    draw: str = ""
+    told: str = ""
+
+
+def _corrugation(case: Case, rows: int, before: int, recorded: int, seed: int) -> _Corrugation:
+    """Corrugation of a case over so many cells, of which the record begins after some."""
+    keys = case.surface
+    wave = keys.corrugation_wavelength
+    if keys.corrugation is None or wave is None:
+        return _Corrugation(np.zeros(rows))
+    width = keys.corrugation_bandwidth
+    how: dict[str, Any] = {"bandwidth": width, "seed": seed, "before": before}
+    found = corrugation(rows, case.contact.spacing, wavelength=wave, amplitude=keys.corrugation, **how)
+    if width is None:
+        return _Corrugation(found.heights)
+    here = rounded(1e6 * float(found.heights[before : before + recorded].std()))
+    stated = rounded(1e6 * keys.corrugation / math.sqrt(2.0))
+    told = f"corrugation: {here} µm rms over this record, {stated} µm in the long run"
+    return _Corrugation(found.heights, f"{wave:.6g} m, {width:g} octaves, seed {seed}", told)
 
 
 def _pressed(sample: HeightMap) -> HeightMap:
