@@ -19,7 +19,7 @@ import csv
 import json
 import warnings
 from dataclasses import dataclass, replace
-from functools import cache, cached_property
+from functools import cache, cached_property, partial
 from pathlib import Path
 
 import numpy as np
@@ -39,6 +39,7 @@ from asperity.spectra import HALF_BAND, a_weighting, nominal_frequency
 from asperity.structures.lateral_rail import LateralTrack
 from asperity.structures.support import MeasuredSleeper
 from asperity.structures.track import EN_15461_BAYS, Track, decay_rate_of_responses
+from asperity.structures.track_parameters import Bays
 
 SECTIONS = {"B1": "Tata", "B2": "Schrey & Veit", "B3": "Vossloh", "B4": "Strail", "B5": "none"}
 REFERENCE = "B5"
@@ -68,6 +69,25 @@ def energy(level):
 
 
 # --- the tables
+
+
+@dataclass(frozen=True)
+class Vehicle:
+    """From the middle of a vehicle to that of the next: train, number, speed, km/h, A-weighted level, dB.
+
+    The speed is that of the bogies of coaches in between: those of locomotives stand otherwise apart.
+    """
+
+    train: int
+    number: int
+    name: str
+    speed: float
+    total: float
+
+    @property
+    def types(self):
+        """Shares of vehicles in the time."""
+        return COACH if self.name == "coaches" else HALF
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,6 +154,23 @@ class Railway:
     def wavelengths(self):
         """Of the bands of roughness (25,), m, falling."""
         return np.array([0.01 * float(n.split()[0]) for n in self.roughness[0] if n.endswith(" cm")])
+
+    @cached_property
+    def vehicles(self):
+        """Of the reference, each interval from the middle of a vehicle to that of the next."""
+        bogies = {}
+        for row in self.rows("bogies_intercity"):
+            if row["section"] == REFERENCE:
+                bogies.setdefault(row["pass-by"], {})[int(row["bogie"])] = row
+        found = []
+        for row in self.passages:
+            if row["section"] == REFERENCE and row["interval"] != "full":
+                number = int(row["interval"])
+                between = [bogies[row["pass-by"]][2 * number + k] for k in (0, 1)]
+                speeds = [float(each["speed (km/h)"]) for each in between if each["bogie of"] == "coach"]
+                given = row["vehicles"], float(np.mean(speeds)), float(row["total (dB(A))"])
+                found.append(Vehicle(int(row["pass-by"]), number, *given))
+        return sorted(found, key=lambda each: (each.train, each.number))
 
     def levels(self, section, interval="full", vehicles=None):
         """A-weighted levels in `BAND` and their total of each passage, by its number."""
@@ -204,6 +241,8 @@ CANDIDATES = {
 }
 """What could be in the rates: keys that are free beside how a hammer strikes, what is given, the sleepers."""
 NEAREST = tuple(CANDIDATES)[-1]
+DIFFER = {"count": 40, "seed": 3, "spacing": 0.03, "pad": 0.2, "ballast": 0.3}
+"""Bays after which a track repeats, and standard deviations over the mean: 2 cm of spacing; chosen here."""
 ASKEW = {"place": (1e-3, 10e-3, 5e-3), "slope": (1e-3, 0.1, 0.03)}
 """Of hammer and accelerometer: m off the middle of the head, and sine of the lean; limits chosen here."""
 
@@ -241,16 +280,19 @@ def lines_of_bands():
 
 
 def motion(tracks):
-    """Receptances at the distances of EN 15461 (x, lines) of a rail on tracks that share a force.
+    """Receptances at the distances of EN 15461 (x, lines) of a rail on tracks that share a force."""
+    omega = 2.0 * np.pi * lines_of_bands().ravel()
+    return motion_of([track.waves(omega) for track in tracks], tracks[0].sleeper_spacing)
+
+
+def motion_of(waves, spacing, force=None):
+    """The same of their waves, with the force in the middle of the first bay or at a place, m.
 
     A hammer on one rail presses half as much on both alike, and half as much on one against the other.
     """
-    omega, total = 2.0 * np.pi * lines_of_bands().ravel(), 0.0
-    for track in tracks:
-        waves, spacing = track.waves(omega), track.sleeper_spacing
-        each = [waves.receptance(spacing * (0.5 + bays), 0.5 * spacing) for bays in EN_15461_BAYS]
-        total = total + np.array(each) / len(tracks)
-    return total
+    begin = 0.5 * spacing if force is None else force
+    each = [[own.receptance(begin + spacing * bays, begin) for bays in EN_15461_BAYS] for own in waves]
+    return np.mean(each, axis=0)
 
 
 def hammered(tracks):
@@ -278,14 +320,30 @@ def hammered_askew(keys, sideways, kind="rigid"):
 
     They twist the rail and press it sideways a little, and hear as much of it; those waves reach farther.
     """
+    tracks, beside = askew(keys, sideways, kind)
+    distances = tracks[0].sleeper_spacing * np.array(EN_15461_BAYS)
+    return in_bands(distances, motion(tracks) + beside, lines_of_bands())
+
+
+def askew(keys, sideways, kind):
+    """Tracks that share the force of a hammer that leans, and what it hears of the rail sideways."""
     told = dict(keys)
     place, slope = (told.pop(name) for name in ASKEW)
     receptances, track = sideways
     moved = np.array([1.0, slope]) @ track.contact_shapes(place)
-    beside = np.einsum("a,xabf,b->xf", moved, receptances, moved)
-    tracks = tracks_of(told, kind)
-    distances = tracks[0].sleeper_spacing * np.array(EN_15461_BAYS)
-    return in_bands(distances, motion(tracks) + beside, lines_of_bands())
+    return tracks_of(told, kind), np.einsum("a,xabf,b->xf", moved, receptances, moved)
+
+
+def hammered_in_bays(keys, sideways, kind):
+    """Levels of rates in bays that differ (places, 18), less those in equal ones, dB, of a hammer askew."""
+    tracks, beside = askew(keys, sideways, kind)
+    spacing, omega = tracks[0].sleeper_spacing, 2.0 * np.pi * lines_of_bands().ravel()
+    distances = spacing * np.array(EN_15461_BAYS)
+    differ = [replace(track, bays=Bays.drawn(**DIFFER)) for track in tracks]
+    waves = [track.waves(omega) for track in differ]
+    each = [motion_of(waves, spacing, force) for force in differ[0].mid_spans[::4]]
+    rates = [in_bands(distances, moved + beside, lines_of_bands()) for moved in (*each, motion(tracks))]
+    return level(rates[:-1]) - level(rates[-1])
 
 
 def sideways_motion(track):
@@ -404,8 +462,11 @@ def mean_roughness(lines):
 
 def at_bands(wavelengths, levels, speed):
     """Roughness levels (..., 25) at the wavelengths v/f of `BAND`, between bands by lg λ."""
-    place, at = np.log10(speed / 3.6 / BAND), np.log10(wavelengths)[::-1]
-    return np.apply_along_axis(lambda each: np.interp(place, at, each[::-1]), -1, np.asarray(levels))
+    at, rising = np.log10(wavelengths)[::-1], np.asarray(levels)[..., ::-1]
+    place = np.clip(np.log10(speed / 3.6 / BAND), at[0], at[-1])
+    after = np.clip(np.searchsorted(at, place, side="right"), 1, len(at) - 1)
+    share = (place - at[after - 1]) / (at[after] - at[after - 1])
+    return rising[..., after - 1] + share * (rising[..., after] - rising[..., after - 1])
 
 
 DEPTHS = (0.22, 0.315, 0.41)
@@ -601,6 +662,7 @@ def of_means(passages):
 
 NAMES = [nominal_frequency(each) for each in BAND]
 INTERCITY_SPEED = 136.0
+COACH = {"coach": 1.0}
 HALF = {"coach": 0.5, "locomotive": 0.5}
 """From the middle of a locomotive to that of the coach behind it."""
 
@@ -700,7 +762,7 @@ class Found:
 
     def _seen_at_reference(self, ensemble):
         at = REFERENCE, INTERCITY_SPEED
-        each = [ensemble.level(at[0], types, at[1]) for types in ({"coach": 1.0}, HALF)]
+        each = [ensemble.level(at[0], types, at[1]) for types in (COACH, HALF)]
         return np.hstack(each)
 
     @cached_property
@@ -723,7 +785,7 @@ class Found:
         """Largest difference of the runs' change and that of the nominal draw, without other sources, dB."""
         nominal = self.ensemble()
         nominal.held["others"] = np.full_like(nominal.held["others"], -200.0)
-        expected = nominal.difference("B4", {"coach": 1.0}, SPEED)[0]
+        expected = nominal.difference("B4", COACH, SPEED)[0]
         return float(np.abs(self.spectrum("B4") - self.spectrum(REFERENCE) - expected).max())
 
     def difference(self, ensemble, section):
@@ -778,7 +840,10 @@ def fit_candidate(railway, section, free, fixed, kind=KINDS[0]):
 
 
 def decay_candidates(railway):
-    """What is left of the rates of each section by candidate; if the nearest is near enough; its keys."""
+    """What is left of the rates of each section by candidate; if the nearest is near enough; its keys.
+
+    And of the nearest, by section, its keys, and what is left with and without the band of 5 kHz.
+    """
     rows, offs = [], {}
     for name, candidate in CANDIDATES.items():
         found = [fit_candidate(railway, section, *candidate) for section in SECTIONS]
@@ -809,8 +874,27 @@ def decay_candidates(railway):
     better = ["", "left of the fit, rms dB", "left − right, rms dB", "at most that", "at most 1.2 dB"]
     head = ["", "pad / (MN/m)", "ballast / (MN/m)", "/ (kN s/m)", "loss of pad", "of rail", "of sleeper"]
     head += ["modal masses", "off / mm", "slope"]
-    left = {section: off for section, (_, off, _) in offs.items()}
-    return table(["", *SECTIONS, "mean"], rows), table(better, asked), table(head, keys_of), left
+    return table(["", *SECTIONS, "mean"], rows), table(better, asked), table(head, keys_of), offs
+
+
+def bays_that_differ(railway, nearest):
+    """What bays that differ do to rates of the nearest kind of track, by section: no key is free for it."""
+    sideways_of, rows = partial(webbed_sideways, railway), []
+    free, fixed, kind = CANDIDATES[NEAREST]
+    for section, (keys, _, left) in nearest.items():
+        both = level(railway.rates(section, "vertical", "2012", "none"))
+        places = hammered_in_bays(keys | fixed, sideways_of(section), kind)
+        factor = energy(places.mean(axis=0))
+
+        def computed(each, section=section, factor=factor):
+            return factor * hammered_askew(each | fixed, sideways_of(section), kind)
+
+        _, off = fitted(computed, free | ASKEW, both.mean(axis=0))
+        told = (both[0] - both[1])[:-1], places.std(axis=0)[:-1], off[:-1]
+        apart, by_place, in_bays = (rms(each) for each in told)
+        rows.append([section, *(f"{each:.2f}" for each in (apart, left, in_bays, by_place))])
+    head = ["100 Hz to 4 kHz, rms dB", "left − right", "left of the nearest, bays alike", "bays differ"]
+    return table([*head, "bays differ: one place of the hammer less the mean"], rows)
 
 
 def determined(found):
@@ -996,8 +1080,8 @@ def candidates(found):
     measured, total = found.coach
     case, tree = found.reference
     ensemble = found.blind
-    slower = ensemble.level(REFERENCE, {"coach": 1.0}, INTERCITY_SPEED)[0]
-    slower = slower - ensemble.level(REFERENCE, {"coach": 1.0}, SPEED)[0]
+    slower = ensemble.level(REFERENCE, COACH, INTERCITY_SPEED)[0]
+    slower = slower - ensemble.level(REFERENCE, COACH, SPEED)[0]
     plain, own = heard(case, tree), found.spectrum(REFERENCE)
     up, all_up = (level(energy(plain[rows]).sum(axis=0)) for rows in ([0, 2], [0, 2, 3]))
     spectra = {
@@ -1046,10 +1130,7 @@ def sleeper_candidates(found):
     parts, at = mean_of(found.runs[REFERENCE]), PARTS.index("sleepers")
     track = tracks_of(found.track)[0]
     nominal = found.blind
-    slower = (
-        nominal.level(REFERENCE, {"coach": 1.0}, INTERCITY_SPEED)[0]
-        - nominal.level(REFERENCE, {"coach": 1.0}, SPEED)[0]
-    )
+    slower = nominal.level(REFERENCE, COACH, INTERCITY_SPEED)[0] - nominal.level(REFERENCE, COACH, SPEED)[0]
     none, own = np.zeros(len(BAND)), parts[at]
 
     def over(resistivity):
@@ -1114,7 +1195,7 @@ def half_width(ensemble, known=(), scale=0.0):
             name: each[:1] + scale * (each - each[:1]) if name in known else each
             for name, each in kept.items()
         }
-        total = level(energy(ensemble.level(REFERENCE, {"coach": 1.0}, INTERCITY_SPEED)).sum(axis=1))
+        total = level(energy(ensemble.level(REFERENCE, COACH, INTERCITY_SPEED)).sum(axis=1))
     finally:
         ensemble.held = kept
     _, low, high = interval(total)
@@ -1143,10 +1224,10 @@ def spectrum_table(found):
     """Coaches at the reference: measured, as first stated, anew, by part, and after what was seen there."""
     measured, total = found.coach
     parts, stated = mean_of(found.runs[REFERENCE]), found.stated["coaches"]
-    blind = found.blind.level(REFERENCE, {"coach": 1.0}, INTERCITY_SPEED)
-    after = found.after_reference.level(REFERENCE, {"coach": 1.0}, INTERCITY_SPEED)
+    blind = found.blind.level(REFERENCE, COACH, INTERCITY_SPEED)
+    after = found.after_reference.level(REFERENCE, COACH, INTERCITY_SPEED)
 
-    def in_words(draws):
+    def rounded(draws):
         return "{:.1f} ({:.0f} … {:.0f})".format(*interval(draws))
 
     rows = [
@@ -1154,17 +1235,24 @@ def spectrum_table(found):
             name,
             f"{measured[k]:.1f}",
             stated[name],
-            in_words(blind[:, k]),
+            rounded(blind[:, k]),
             *(f"{each:.1f}" for each in parts[:, k]),
-            f"{interval(after[:, k])[0]:.1f}",
+            rounded(after[:, k]),
         ]
         for k, name in enumerate(NAMES)
     ]
     anew, seen = (level(energy(each).sum(axis=1)) for each in (blind, after))
     of_parts = level(energy(parts).sum(axis=1))
-    last = [f"{total:.1f}", stated["dB(A)"], in_words(anew), *(f"{each:.1f}" for each in of_parts)]
-    rows.append([f"**{each}**" for each in ["dB(A)", *last, f"{interval(seen)[0]:.1f}"]])
-    head = ["band", "measured", "as first stated, 80 %", "anew, 80 %", *PARTS, "one roughness of wheels"]
+    last = [f"{total:.1f}", stated["dB(A)"], rounded(anew), *(f"{each:.1f}" for each in of_parts)]
+    rows.append([f"**{each}**" for each in ["dB(A)", *last, rounded(seen)]])
+    head = [
+        "band",
+        "measured",
+        "as first stated, 80 %",
+        "anew, 80 %",
+        *PARTS,
+        "one roughness of wheels, 80 %",
+    ]
     return table(head, rows)
 
 
@@ -1193,36 +1281,160 @@ def by_hand(found):
     return table(head, rows), dict(zip(NAMES, faster, strict=True))
 
 
-def course(found):
-    """How the A-level of coaches goes with the speed, measured by train and computed: n of n lg v."""
-    passed = found.railway.levels(REFERENCE, "each", "coaches")
-    speeds = {
-        row["pass-by"]: float(row["speed (km/h)"]) for row in found.railway.passages if row["speed (km/h)"]
-    }
-    at = np.log10([speeds[name] for name in passed])
-    levels = np.array([each[-1] for each in passed.values()])
-    slope, covariance = np.polyfit(at, levels, 1, cov=True)
-    ends = [found.after_reference.level(REFERENCE, {"coach": 1.0}, v) for v in (123.0, 141.0)]
-    totals = [np.median(level(energy(each).sum(axis=1))) for each in ends]
-    computed = float(np.diff(totals)[0] / np.log10(141.0 / 123.0))
-    of_train = [
-        float(
-            np.median(
-                level(energy(found.after_reference.level(REFERENCE, {"coach": 1.0}, speeds[n])).sum(axis=1))
-            )
-        )
-        for n in passed
+def vehicles(found):
+    """Vehicles at the reference, in the mean of a train and one by one: tables, and what they say in numbers.
+
+    Computed blind, and with one roughness of all wheels and one offset of the board. What one vehicle or one
+    train has beside these is drawn with the scatter of those of all other trains.
+    """
+    passed = found.railway.vehicles
+    trains = np.array([each.train for each in passed])
+    coaches = np.array([each.types == COACH for each in passed])
+    speeds, measured = (np.array([getattr(each, name) for each in passed]) for name in ("speed", "total"))
+    blind, seen = (
+        np.stack([totals(ensemble.level(REFERENCE, each.types, each.speed)) for each in passed])
+        for ensemble in (found.blind, found.after_reference)
+    )
+    one = with_scatter_of_others(seen, measured, trains, coaches)
+    told = [interval(draws.T) for draws in (blind, one)]
+    by_vehicle = [
+        [each.train, each.number, each.name, f"{each.speed:.1f}", f"{each.total:.1f}"]
+        + [f"{end:.1f}" for draws in told for end in draws[:, k]]
+        for k, each in enumerate(passed)
     ]
-    rows = [row for row in found.railway.passages if row["vehicles"] == "coaches"]
-    apart = np.std([float(row["total (dB(A))"]) for row in rows], ddof=1)
+    names = sorted(set(trains.tolist()))
+    of_trains = [
+        [draws[coaches & (trains == name)].mean(axis=0) for name in names] for draws in (blind, seen)
+    ]
+    means = np.array([measured[coaches & (trains == name)].mean() for name in names])
+    whole = with_scatter_of_others(np.stack(of_trains[1]), means, np.array(names), np.zeros(len(names)))
+    by_train = []
+    for k, name in enumerate(names):
+        kept = coaches & (trains == name)
+        by_train.append(
+            [
+                str(name),
+                f"{kept.sum()}",
+                f"{speeds[kept].mean():.0f}",
+                f"{means[k]:.1f} ± {np.std(measured[kept], ddof=1):.1f}",
+                in_words(of_trains[0][k]),
+                in_words(whole[k]),
+                " ".join(signed(each) for each in (measured - told[1][0])[kept]),
+                " ".join(signed(each) for each in (measured - told[1][0])[~coaches & (trains == name)])
+                or "–",
+            ]
+        )
+    head = ["train", "coaches", "km/h", "measured, ± of one coach", "blind, 80 %"]
+    head += ["one roughness, one offset, 80 %", "each coach, measured less computed", "with the locomotive"]
+    inside = [[held(draws, measured, kept) for kept in (coaches, ~coaches)] for draws in told]
+    return {
+        "trains": table(head, by_train),
+        "coaches_inside_blind": inside[0][0],
+        "locomotives_inside_blind": inside[0][1],
+        "coaches_inside": inside[1][0],
+        "locomotives_inside": inside[1][1],
+        "trains_inside": held(interval(whole.T), means),
+        "coach_scatter": rms((measured - told[1][0])[coaches]),
+        "coach_half": float(np.mean(np.diff(told[1][1:, coaches], axis=0)) / 2.0),
+        "trains_rms": rms(means - np.median(of_trains[1], axis=1)),
+        "vehicles": int(coaches.sum()),
+    }, by_vehicle
+
+
+VEHICLES = (
+    *(
+        "train",
+        "interval",
+        "vehicles",
+        "speed (km/h)",
+        "measured (dB(A))",
+        "blind (dB(A))",
+        "blind, low (dB(A))",
+    ),
+    *("blind, high (dB(A))", "computed (dB(A))", "low (dB(A))", "high (dB(A))"),
+)
+
+
+def totals(levels):
+    """A-weighted levels (draws,), dB, of levels in bands (draws, bands)."""
+    return level(energy(levels).sum(axis=1))
+
+
+def in_words(draws):
+    """Median and 80 % interval of levels (n,)."""
+    return "{:.1f} ({:.1f} … {:.1f})".format(*interval(draws))
+
+
+def held(told, measured, kept=slice(None)):
+    """How many of those measured (n,) lie within an interval (3, n), in words."""
+    inside = ((measured >= told[1]) & (measured <= told[2]))[kept]
+    return f"{inside.sum()} of {inside.size}"
+
+
+def with_scatter_of_others(draws, measured, groups, kinds):
+    """Draws (n, draws) with the scatter of what was measured (n,) of the same kind in other groups (n,)."""
+    off = measured - np.median(draws, axis=1)
+    drawn = np.random.default_rng(SEED + 3).standard_normal(draws.shape)
+    scatter = [
+        rms(off[(kinds == kind) & (groups != group)]) for group, kind in zip(groups, kinds, strict=True)
+    ]
+    return draws + np.array(scatter)[:, None] * drawn
+
+
+def course(found):
+    """How the A-level of coaches goes with the speed, by train, measured and computed: n of n lg v."""
+    passed = [each for each in found.railway.vehicles if each.types == COACH]
+    names = sorted({each.train for each in passed})
+    of_train = [[(e.speed, e.total) for e in passed if e.train == name] for name in names]
+    speeds, levels = np.array([np.mean(each, axis=0) for each in of_train]).T
+    slope, covariance = np.polyfit(np.log10(speeds), levels, 1, cov=True)
+    faster = speeds > speeds.min()
+    without, apart = np.polyfit(np.log10(speeds[faster]), levels[faster], 1, cov=True)
+    ends = speeds.min(), speeds.max()
+
+    def computed(ensemble):
+        slow, fast = (totals(ensemble.level(REFERENCE, COACH, v)) for v in ends)
+        return "{:.0f} ({:.0f} … {:.0f})".format(*interval((fast - slow) / np.log10(ends[1] / ends[0])))
+
     return {
         "slope": slope[0],
         "slope_error": float(np.sqrt(covariance[0, 0])),
-        "slope_computed": computed,
-        "trains_rms": rms(levels - np.array(of_train)),
-        "vehicles": len(rows),
-        "vehicle_scatter": float(apart),
+        "slope_without": without[0],
+        "slope_without_error": float(np.sqrt(apart[0, 0])),
+        "slope_blind": computed(found.blind),
+        "slope_computed": computed(found.after_reference),
+        "slowest": ends[0],
+        "fastest": ends[1],
     }
+
+
+def board(found):
+    """Offset of the board and roughness of wheels, blind and after the reference, and what goes with it."""
+    ensembles = found.blind, found.after_reference
+    stated = MICROPHONE["receiver_offset"]
+    rows = [["board, dB", *(with_interval(stated + each.held["offset"][:, 0]) for each in ensembles)]]
+    waves, wheels = found.railway.wavelengths, "wheels of coach"
+    for wave in WAVES:
+        at = int(np.argmin(np.abs(np.log(waves / wave))))
+        rows.append(
+            [
+                f"wheels of coaches at {100.0 * waves[at]:.2g} cm, dB re 1 µm",
+                *(with_interval(each.held[wheels][:, at]) for each in ensembles),
+            ]
+        )
+    after = found.after_reference.held
+    heard_waves = (waves > 0.007) & (waves < 0.16)
+    common = after[wheels][:, heard_waves].mean(axis=1)
+    shares = sum(after[f"share of {part}"].mean(axis=1) for part in PARTS) / len(PARTS)
+    return {
+        "board": table(["", "blind, 80 %", "after the reference, 80 %"], rows),
+        "board_wheels": f"{np.corrcoef(after['offset'][:, 0], common)[0, 1]:+.1f}".replace("-", "−"),
+        "board_shares": f"{np.corrcoef(after['offset'][:, 0], shares)[0, 1]:+.1f}".replace("-", "−"),
+    }
+
+
+WAVES = (0.125, 0.08, 0.05, 0.0315, 0.02, 0.0125, 0.008)
+"""m, of the bands of wheels' roughness that are printed."""
 
 
 def dampers_on_pads():
@@ -1361,16 +1573,22 @@ def page(found, folder):
     """Text of the page; its figures go into a folder."""
     (blind, after), none = strail_in_numbers(found)
     fits, rates = decay_fits(found)
-    candidates_of_rates, better, nearest, left = decay_candidates(found.railway)
+    candidates_of_rates, better, nearest, of_nearest = decay_candidates(found.railway)
     assumed, offs = candidates(found)
     checked, faster = by_hand(found)
     wide, share_known = widths(found)
     drawn(found, rates, folder)
     fitted_off = {section: rms(np.subtract(*rates[section, KINDS[3]])) for section in SECTIONS}
-    write_table(LEDGER, ledger(found, fitted_off, left, offs), folder / "measured_railway.csv")
+    write_table(
+        LEDGER,
+        ledger(found, fitted_off, {name: each[1] for name, each in of_nearest.items()}, offs),
+        folder / "measured_railway.csv",
+    )
     write_table(SHOWN, shown(found), folder / "railway_sections.csv")
+    one_by_one, of_vehicles = vehicles(found)
+    write_table(VEHICLES, of_vehicles, folder / "railway_vehicles.csv")
     off = offs[AS_IT_IS]
-    whole = interval(level(energy(found.blind.level(REFERENCE, {"coach": 1.0}, INTERCITY_SPEED)).sum(axis=1)))
+    whole = interval(level(energy(found.blind.level(REFERENCE, COACH, INTERCITY_SPEED)).sum(axis=1)))
     return (
         Path(__file__)
         .with_suffix(".txt")
@@ -1385,6 +1603,7 @@ def page(found, folder):
             better=better,
             candidates_of_rates=candidates_of_rates,
             nearest=nearest,
+            bays=bays_that_differ(found.railway, of_nearest),
             lateral=lateral_at(found),
             web=web_at(found),
             web_sections=web_sections(found),
@@ -1419,7 +1638,9 @@ def page(found, folder):
             sure_after=after[2],
             after_sure_rms=after[3],
             after_sure_none=after[4],
+            **one_by_one,
             **course(found),
+            **board(found),
         )
     )
 
@@ -1432,7 +1653,7 @@ def ledger(found, fits, left, offs):
     (blind, _), _ = strail_in_numbers(found)
     apart = found.difference(found.blind, "B4")[1]
     measured = found.measured_difference.mean(axis=0)[-1]
-    coaches = found.blind.level(REFERENCE, {"coach": 1.0}, INTERCITY_SPEED)
+    coaches = found.blind.level(REFERENCE, COACH, INTERCITY_SPEED)
     total = level(energy(coaches).sum(axis=1))
     band, offset = off_bands(offs[AS_IT_IS])
     anew = [

@@ -99,6 +99,50 @@ def test_draws_of_a_railway_keep_the_mean_energy():
     assert not drawn[0].any()
 
 
+def test_levels_between_bands_of_roughness_lie_on_straight_lines_over_the_logarithm():
+    """Of falling wavelengths; beyond them the first and the last level stand, as NumPy has it of one row."""
+    waves = 0.2 * 10.0 ** (-0.1 * np.arange(25))
+    rows = np.random.default_rng(4).normal(size=(3, 25))
+    for speed in (20.0, 136.0, 300.0):
+        place = np.log10(speed / 3.6 / railway.BAND)
+        expected = [np.interp(place, np.log10(waves)[::-1], row[::-1]) for row in rows]
+        np.testing.assert_allclose(railway.at_bands(waves, rows, speed), expected, rtol=0, atol=1e-12)
+        np.testing.assert_allclose(railway.at_bands(waves, rows[0], speed), expected[0], rtol=0, atol=1e-12)
+
+
+def test_a_vehicle_scatters_as_those_of_its_kind_in_other_trains():
+    """Two kinds, three trains: what one is off by is not in its own interval, but in those of others."""
+    computed = np.zeros((6, 20_000))
+    measured = np.array([3.0, 0.0, 0.0, 40.0, 0.0, 0.0])
+    trains, kinds = np.array([1, 2, 3, 1, 2, 3]), np.array([0, 0, 0, 1, 1, 1])
+    found = railway.with_scatter_of_others(computed, measured, trains, kinds)
+    other = 3.0 / np.sqrt(2.0)
+    assert found.std(axis=1) == pytest.approx([0.0, other, other, 0.0, *[40.0 / np.sqrt(2.0)] * 2], rel=0.02)
+    told = railway.interval(found.T)
+    assert railway.held(told, measured) == "4 of 6"
+    assert railway.held(told, measured, kinds == 1) == "2 of 3"
+
+
+def test_a_vehicle_is_passed_at_the_speed_of_the_coaches_in_between(tmp_path):
+    """Between the middles of vehicles k and k + 1 are bogies 2k and 2k + 1, but for those of locomotives."""
+    bogies = ["pass-by,section,bogie,speed (km/h),time (s),bogie of"]
+    of = ["coach"] * 4 + ["locomotive"] * 2
+    for section, more in (("B2", 50.0), ("B5", 0.0)):
+        bogies += [f"7,{section},{k},{100.0 + k + more},0,{each}" for k, each in enumerate(of, 1)]
+    (tmp_path / "bogies_intercity.csv").write_text("\n".join(bogies), encoding="utf-8")
+    head = "pass-by,section,speed (km/h),interval,vehicles,total (dB(A))"
+    rows = [
+        "7,B5,140,2,locomotive and coach,97",
+        "7,B5,140,full,train,90",
+        "7,B5,140,1,coaches,93",
+        "7,B4,,1,coaches,1",
+    ]
+    (tmp_path / "pass_by_intercity.csv").write_text("\n".join([head, *rows]), encoding="utf-8")
+    first, last = railway.Railway(tmp_path).vehicles
+    assert (first.number, first.types, first.speed, first.total) == (1, railway.COACH, 102.5, 93.0)
+    assert (last.number, last.types, last.speed, last.total) == (2, railway.HALF, 104.0, 97.0)
+
+
 def test_a_hammer_that_strikes_straight_hears_the_vertical_waves_alone():
     """One 10 mm off that leans by 0.1 finds rates between those up and down and sideways at 500 Hz."""
     keys = {name: first for name, (*_, first) in railway.FREE.items()}
