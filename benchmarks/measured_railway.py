@@ -33,8 +33,8 @@ from asperity.case.bodies import WheelOnRail
 from asperity.observables.observable import Measured
 from asperity.reference import cnossos
 from asperity.scenes import schema
+from asperity.scenes.beside_track import pass_by_group
 from asperity.scenes.measured import HammerTest
-from asperity.scenes.noise import pass_by_group
 from asperity.spectra import HALF_BAND, a_weighting, nominal_frequency
 from asperity.structures.lateral_rail import LateralTrack
 from asperity.structures.support import MeasuredSleeper

@@ -30,7 +30,7 @@ from asperity.reporting.chart import BLUE, GREEN, INK, VERMILLION, Axis, Chart, 
 from asperity.reporting.figure import write_chart
 from asperity.reporting.panels import frequency_axis
 from asperity.scenarios.scene import force_transfer
-from asperity.scenes.noise import rolling_sound_power
+from asperity.scenes.cnossos_power import rolling_sound_power
 from asperity.spectra import a_weighted_total, nominal
 from asperity.store import Store
 from asperity.structures.outline import WheelSection

@@ -11,7 +11,7 @@ from ledger import Check
 from asperity import Track, Wheel
 from asperity.reference import cnossos
 from asperity.scenarios.scene import force_transfer
-from asperity.scenes.noise import rolling_sound_power
+from asperity.scenes.cnossos_power import rolling_sound_power
 from asperity.spectra import a_weighted_total
 
 TABLES = Path(__file__).parent / "data" / "railway_tables.json"

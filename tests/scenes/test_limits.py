@@ -11,10 +11,10 @@ from asperity import WheelOnRail
 from asperity.errors import CaseError
 from asperity.reference.cnossos import rail_roughness
 from asperity.reference.railways import pass_by_limit
+from asperity.scenes.beside_track import pass_by_group, sources_of
 from asperity.scenes.figures.measured import limit_sentence, limits_table
 from asperity.scenes.figures.noise import pass_by_answers
 from asperity.scenes.measured import _of_roughness
-from asperity.scenes.noise import pass_by_group, sources_of
 from asperity.scenes.track import stated_levels
 from asperity.schema import group
 from asperity.surfaces.heightmap import Profile

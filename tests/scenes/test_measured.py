@@ -14,6 +14,7 @@ from asperity.radiation.track import squared_mobility
 from asperity.reporting.data import unless_missing
 from asperity.running import prepare_case
 from asperity.scenes import schema
+from asperity.scenes.beside_track import pass_by_group
 from asperity.scenes.figures.measured import (
     MEASURED,
     measured_sound_table,
@@ -29,7 +30,6 @@ from asperity.scenes.figures.noise import (
 )
 from asperity.scenes.figures.track import decay_rate, receptance
 from asperity.scenes.measured import HammerTest
-from asperity.scenes.noise import pass_by_group
 from asperity.scenes.track import planned_track
 from asperity.schema import group, spectra
 from asperity.spectra import a_weighting

@@ -15,9 +15,11 @@ from asperity.reference import cnossos
 from asperity.reporting.chart import Line
 from asperity.reporting.data import unless_missing
 from asperity.running import prepare_case
-from asperity.scenes import noise
+from asperity.scenes import cnossos_power
+from asperity.scenes.beside_track import pass_by_group
+from asperity.scenes.cnossos_power import rolling_sound_power
 from asperity.scenes.figures import noise as figures
-from asperity.scenes.noise import RADIATORS, pass_by_group, rail_section, rolling_sound_power, silent_wheel
+from asperity.scenes.noise import RADIATORS, rail_section, silent_wheel
 from asperity.scenes.track import planned_track
 from asperity.schema import group
 from asperity.spectra import HALF_BAND, a_weighted_total, band_energies
@@ -46,9 +48,9 @@ def test_pads_have_the_class_of_the_directive_and_wheels_the_nearest_diameter():
     """Table [2.3.b]: 150 to 250, 250 to 800, 800 to 1000 MN/m."""
     pads = {80e6: "soft", 200e6: "soft", 250e6: "medium", 799e6: "medium", 900e6: "hard", 2e9: "hard"}
     for stiffness, name in pads.items():
-        assert noise.track_label(labelled(track={"pad_stiffness": stiffness})) == name
+        assert cnossos_power.track_label(labelled(track={"pad_stiffness": stiffness})) == name
     for diameter, name in {0.6: "680 mm", 0.8: "840 mm", 0.9: "920 mm", 1.25: "1200 mm"}.items():
-        assert noise.wheel_label(labelled(wheel={"radius": diameter / 2})) == name
+        assert cnossos_power.wheel_label(labelled(wheel={"radius": diameter / 2})) == name
 
 
 @pytest.mark.parametrize(
@@ -70,7 +72,7 @@ def test_pads_have_the_class_of_the_directive_and_wheels_the_nearest_diameter():
     ],
 )
 def test_a_label_that_does_not_fit_is_told_with_what_to_do(sections, told):
-    found = noise.findings_of_labels(labelled(**sections))
+    found = cnossos_power.findings_of_labels(labelled(**sections))
     assert [finding.grade for finding in found] == [Grade.WARNING] * (told is not None)
     assert all(told in finding.message for finding in found)
 

@@ -10,7 +10,7 @@ from asperity.rolling.roll import roll_bodies
 from asperity.running import prepare_case
 from asperity.scenarios.preparing import Work
 from asperity.scenes import compute
-from asperity.scenes.noise import noise
+from asperity.scenes.cnossos_power import standard_power
 from asperity.scenes.planning import plan
 from asperity.scenes.report import figures_of
 from small_cases import HEARD
@@ -87,7 +87,7 @@ def test_for_a_sound_power_that_is_not_told_no_law_is_rolled(speed, times, monke
     found = compute.compute(prepare_case(case), lambda *_: None)
     assert len(rolled) == times
     assert (found.bare_levels is None) == (times == 1)
-    assert bool(noise(found)) == (times == 2)
+    assert bool(standard_power(found)) == (times == 2)
 
 
 def test_levels_beside_the_track_are_refused():

@@ -12,10 +12,10 @@ from asperity.radiation.wheel import RadiatingWheel
 from asperity.reference.materials import MATERIALS
 from asperity.reporting.data import unless_missing
 from asperity.scenes import schema
+from asperity.scenes.beside_track import pass_by_group
 from asperity.scenes.figures import noise
 from asperity.scenes.figures.measured import limits_table
 from asperity.scenes.figures.sideways import SIDEWAYS, sideways_table
-from asperity.scenes.noise import pass_by_group
 from asperity.spectra import HALF_BAND, band_energies, energy_sum
 from asperity.structures.lateral_rail import LateralTrack, wheel_receptances
 from asperity.structures.modal import modal_answers

@@ -16,7 +16,7 @@ from asperity.scenarios.laws import working_point
 from asperity.scenarios.records import spectrum_levels
 from asperity.scenarios.scene import PreparedCase, Receptance, Scene, mean_square_transfer
 from asperity.scenarios.textures import self_affine_keys
-from asperity.scenes import compute, measured, noise, schema
+from asperity.scenes import beside_track, cnossos_power, compute, measured, noise, schema
 from asperity.scenes.observer import Observer
 from asperity.scenes.over_frequency import held_values
 from asperity.scenes.sideways import sideways_group, sideways_of
@@ -46,7 +46,7 @@ def track_spectra(computed: compute.Computed) -> Values:
         schema.POINT_VELOCITY_PSD: velocity[..., shown],
         schema.POINT_VELOCITY_LEVEL: computed.levels(velocity, schema.VELOCITY_REFERENCE),
         **_roughness(computed),
-        **noise.noise(computed),
+        **cnossos_power.standard_power(computed),
         **noise.radiation(computed, values, None if side is None else side.power),
         **tones(computed),
     }
@@ -342,14 +342,14 @@ def pass_by_of(computed: compute.Computed) -> Values:
     noise.warn_of_silence(computed.case)
     over_bands: Values = {spectra_schema.LAW: list(computed.runs), spectra_schema.BAND: computed.band}
     in_bands = group(over_bands | computed.derived(track_spectra))
-    return noise.pass_by_group(computed.case, in_bands, computed.derived(sideways_group))
+    return beside_track.pass_by_group(computed.case, in_bands, computed.derived(sideways_group))
 
 
 def findings_of_noise(computed: compute.Computed) -> list[Finding]:
     """Hold what CNOSSOS-EU knows, and what was measured, to the track and the wheel of the case."""
     case = computed.case
     labelled = schema.SOUND_POWER_LEVEL_A in computed.derived(track_spectra)
-    of_labels = noise.findings_of_labels(case) if labelled else []
+    of_labels = cnossos_power.findings_of_labels(case) if labelled else []
     return of_labels + measured.findings_of_measured(case.track, computed.track.nominal, computed.band)
 
 
@@ -369,7 +369,7 @@ RAIL = Observer(
     lambda computed: computed.derived(track_spectra),
     needs=("track",),
     findings=findings_of_noise,
-    sources=lambda computed: (*noise.cited(computed.case), *noise.sources_of(computed.case)),
+    sources=lambda computed: (*cnossos_power.cited(computed.case), *beside_track.sources_of(computed.case)),
 )
 """Motion and sound power of what rolls over a track, over frequency."""
 PASS_BY = Observer(
@@ -398,10 +398,9 @@ def planned_track(prepared: PreparedCase) -> list[tuple[str, str]]:
     if reason := noise.silent_wheel(case):
         known = f"rail and sleepers: {reason}"
     if np.ptp(prepared.textures.line) and not isinstance(case.speed, SpeedCourse):
-        known += (
-            f"; by CNOSSOS-EU for {noise.track_label(case)} pads and a wheel of {noise.wheel_label(case)}"
-        )
-        doubts += noise.findings_of_labels(case)
+        pads, diameter = cnossos_power.track_label(case), cnossos_power.wheel_label(case)
+        known += f"; by CNOSSOS-EU for {pads} pads and a wheel of {diameter}"
+        doubts += cnossos_power.findings_of_labels(case)
     warn_of_findings(doubts)
     frequencies = f"critical speed {rounded(track.critical_speed, 4)} m/s"
     if not track.continuous:
