@@ -25,18 +25,27 @@ def refuse_without(package: str, extra: str, source: str, received: str) -> None
     require(there, source, received, f"it with the package {package}", remedy)
 
 
-def of_universal(file: Path, array: str | None) -> Found:
-    """Time response of a universal file that is named, or the only one."""
-    refuse_without("pyuff", "uff", file.name, "a universal file")
+def read(file: Path, ending: str, array: str | None) -> Found:
+    """Signals of a universal file or of one in Parquet, by the reader of its ending, in a sandbox."""
+    reader, kind, called, package, extra = READERS[ending]
+    refuse_without(package.partition(".")[0], extra, file.name, called)
     asked = [array, file.name, asdict(SPELLING.get())]
     (titles, rate), (values,) = sandboxed(
-        responses_of_universal, file, asked, source=file.name, kind="universal", packages=["pyuff"]
+        reader, file, asked, source=file.name, kind=kind, packages=[package]
     )
     return values, list(titles), rate
 
 
+def _chosen(names: list[str], array: str | None, source: str, spelling: dict[str, Any]) -> str:
+    """Name of the signal that is asked for, or of the only one."""
+    with spelled(Spelling(**spelling)):
+        chosen = arrays.only_one(names, source, "signals") if array is None else array
+    require(chosen in names, f"array in {source}", shown(chosen), f"one of: {listed(names)}", "Choose one.")
+    return chosen
+
+
 def responses_of_universal(path: str, array: str | None, source: str, spelling: dict[str, Any]) -> Answer:
-    """Read what `of_universal` is asked for."""
+    """Time response of a universal file that is named, or the only one."""
     import pyuff
 
     opened = pyuff.UFF(path)
@@ -51,9 +60,7 @@ def responses_of_universal(path: str, array: str | None, source: str, spelling: 
         f"{word} {each['rsp_node']}" if several[word] > 1 else word
         for word, each in zip(words, responses, strict=True)
     ]
-    with spelled(Spelling(**spelling)):
-        chosen = arrays.only_one(names, source, "signals") if array is None else array
-    require(chosen in names, f"array in {source}", shown(chosen), f"one of: {listed(names)}", "Choose one.")
+    chosen = _chosen(names, array, source, spelling)
     found = responses[names.index(chosen)]
     values = np.asarray(found["data"])
     if found["abscissa_spacing"] == 1:
@@ -61,18 +68,8 @@ def responses_of_universal(path: str, array: str | None, source: str, spelling: 
     return [["time (s)", chosen], None], [np.column_stack([found["x"], values])]
 
 
-def of_parquet(file: Path, array: str | None) -> Found:
-    """Columns of numbers of a Parquet file, side by side, or one of a list of signals that is named."""
-    refuse_without("pyarrow", "parquet", file.name, "a Parquet file")
-    asked = [array, file.name, asdict(SPELLING.get())]
-    titles, (values,) = sandboxed(
-        columns_of_parquet, file, asked, source=file.name, kind="Parquet", packages=["pyarrow.parquet"]
-    )
-    return values, list(titles), None
-
-
 def columns_of_parquet(path: str, array: str | None, source: str, spelling: dict[str, Any]) -> Answer:
-    """Read what `of_parquet` is asked for."""
+    """Columns of numbers of a Parquet file, side by side, or one of a list of signals that is named."""
     import pyarrow as pa
     from pyarrow import parquet
 
@@ -84,13 +81,9 @@ def columns_of_parquet(path: str, array: str | None, source: str, spelling: dict
         names = (
             table.column(words[0]).to_pylist() if words else [str(n) for n in range(1, len(rows or ()) + 1)]
         )
-        with spelled(Spelling(**spelling)):
-            chosen = arrays.only_one(names, source, "signals") if array is None else array
-        require(
-            chosen in names, f"array in {source}", shown(chosen), f"one of: {listed(names)}", "Choose one."
-        )
+        chosen = _chosen(names, array, source, spelling)
         row = table.column(lists[0])[names.index(chosen)].values
-        return [], [np.asarray(row, dtype=float)]
+        return [[], None], [np.asarray(row, dtype=float)]
     titles = [
         field.name
         for field in table.schema
@@ -99,7 +92,14 @@ def columns_of_parquet(path: str, array: str | None, source: str, spelling: dict
     if array is not None:
         allowed = f"one of: {listed(titles)}"
         require(array in titles, f"array in {source}", shown(array), allowed, "Choose one.")
-        return [], [np.asarray(table.column(array), dtype=float)]
+        return [[], None], [np.asarray(table.column(array), dtype=float)]
     received = f"columns {listed(table.column_names) or 'of no name'}"
     require(titles, source, received, "columns of numbers, or a list of them in each row")
-    return titles, [np.column_stack([np.asarray(table.column(name), dtype=float) for name in titles])]
+    return [titles, None], [np.column_stack([np.asarray(table.column(name), dtype=float) for name in titles])]
+
+
+READERS = {
+    ".uff": (responses_of_universal, "universal", "a universal file", "pyuff", "uff"),
+    ".parquet": (columns_of_parquet, "Parquet", "a Parquet file", "pyarrow.parquet", "parquet"),
+}
+"""By the kind of a file: its reader, its name in messages, and the package that it needs, with its extra."""

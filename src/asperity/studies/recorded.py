@@ -128,9 +128,8 @@ def read_columns(file: Path, array: str | None) -> tuple[Array, list[str], float
             beside.pop(name, None)
         elif kind == ".npy":
             values = arrays.array_in(file.read_bytes(), file.name)
-        elif kind in (".uff", ".parquet"):
-            read = kept_signals.of_universal if kind == ".uff" else kept_signals.of_parquet
-            values, titles, rate = read(file, array)
+        elif kind in kept_signals.READERS:
+            values, titles, rate = kept_signals.read(file, kind, array)
             teller = "its step says" if rate else ""
         elif kind == ".mat":
             _, values, beside = matlab.array_of_matlab(file, array, "signals", rates.WORDS)
