@@ -1,7 +1,5 @@
 """A bearing and what it carries, of balls or of rollers, as ``asperity bearing`` reads it."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 

@@ -1,7 +1,5 @@
 """The oil of a bearing: by its grade, or by two viscosities; without it contacts are dry."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any

@@ -1,7 +1,5 @@
 """A bearing as a case says it: by its name, or by its dimensions."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar
 

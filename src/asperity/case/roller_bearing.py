@@ -1,7 +1,5 @@
 """A roller bearing that runs under a load: what of it is other than of a ball bearing."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """What moves sideways: how sections of wheel and rail lie on each other, and how a rail resists."""
 
-from __future__ import annotations
-
 from asperity.arguments import given_options
 from asperity.case.form import Section
 from asperity.parameters import Choice, Quantity, key, keys_of, optional

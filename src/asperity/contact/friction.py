@@ -1,7 +1,5 @@
 """Coulomb's law, and what is known of a contact with friction once it is solved."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A crowned roller on its raceway as a half-space: what slices are held against, ends and edges included."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A roller on its raceway as springs side by side, slices of ISO/TS 16281: force and moment under tilt."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,7 +1,5 @@
 """The tangential problem of a contact that is known: shift, transient and steady rolling with friction."""
 
-from __future__ import annotations
-
 import math
 import warnings
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """State functions of tangential contact: stiffness in stick and creep, rough and smooth under one load."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

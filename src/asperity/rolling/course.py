@@ -1,7 +1,5 @@
 """A mechanism in the course of time: mode shapes under its contacts, and their laws, laid out as it goes."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,7 +1,5 @@
 """A mechanism carried on in time, from rest, and what is kept of it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

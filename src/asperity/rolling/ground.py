@@ -1,7 +1,5 @@
 """What contacts roll over: the modes of structures, a rigid plane, or a rail."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What rolls: bodies and structures, and contacts between any two, each with a trajectory along each side."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 

@@ -1,7 +1,5 @@
 """Bodies roll over a structure on any number of contacts: contact lost, load carried."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Self

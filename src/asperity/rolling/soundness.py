@@ -1,7 +1,5 @@
 """Whether a run can be believed: something moves, loads are carried, steps converge, laws have data."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, TypeVar

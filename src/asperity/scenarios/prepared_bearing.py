@@ -1,7 +1,5 @@
 """A ball bearing laid ready: what is on its parts, what its balls roll over, and what is to be computed."""
 
-from __future__ import annotations
-
 import math
 import warnings
 from dataclasses import dataclass

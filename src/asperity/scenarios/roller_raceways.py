@@ -1,7 +1,5 @@
 """Rollers on raceways that are closed around: what their slices feel, and the law that follows it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

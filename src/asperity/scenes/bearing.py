@@ -1,7 +1,5 @@
 """What a ball bearing did, as a result: its load at rest, its motion, and what its acceleration says."""
 
-from __future__ import annotations
-
 import math
 import time
 import warnings

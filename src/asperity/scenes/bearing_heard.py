@@ -1,7 +1,5 @@
 """What the acceleration of a bearing says: velocities in bands, its envelope, and which part is heard."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 

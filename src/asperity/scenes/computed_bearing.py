@@ -1,7 +1,5 @@
 """A ball bearing is run by each of its laws: what of it was recorded."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace

@@ -1,7 +1,5 @@
 """How a ball bearing carries a load at rest: the energy of all contacts is least there, and convex."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

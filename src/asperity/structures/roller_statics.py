@@ -1,7 +1,5 @@
 """How a roller bearing carries a load at rest: the energy of all slices is least there, and convex."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,7 +1,5 @@
 """Stiffness and damping of a bearing over load, speed and cage angle, for programs of rotors."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Iterator, Sequence

@@ -1,7 +1,5 @@
 """How large a wave of a bearing's part may be alone, for a limit of the velocity in each band."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Headings of heights as text: titles of columns, units, and sizes that lines above the numbers state."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Profiles of wheels and rails as Simpack writes them, and CONTACT reads them: ``.prw`` and ``.prr``."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
