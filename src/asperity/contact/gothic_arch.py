@@ -186,7 +186,7 @@ class FourPointBall:
             f"at most {rounded(1e6 * most)} µm, {FARTHEST:g} of what groove and ball differ by in radius"
         )
         require(moved <= most, "displacement of the arches", received, allowed, "Angles change beyond that.")
-        return np.asarray(self.oversize + self._lines @ [nearer, shifted])
+        return self.oversize + self._lines @ [nearer, shifted]
 
     def line_forces(self, nearer: float, shifted: float) -> Array:
         """Forces of both contacts of each line, (2,), N, at displacements as of `approaches`.
@@ -201,16 +201,16 @@ class FourPointBall:
         allowed = f"at most {rounded(most)} N, whose ellipse reaches the bottom of the arch"
         received = f"{rounded(forces.max(), 4)} N"
         require(forces.max() <= most, "force of a contact", received, allowed, "Take a wider contact angle.")
-        return np.asarray(forces)
+        return forces
 
     def forces(self, nearer: float, shifted: float) -> Array:
         """Forces against nearing and against shifting, (2,), N, at displacements as of `approaches`."""
-        return np.asarray(self.line_forces(nearer, shifted) @ self._lines)
+        return self.line_forces(nearer, shifted) @ self._lines
 
     def stiffness(self, nearer: float, shifted: float) -> Array:
         """Derivative of `forces` by both displacements, (2, 2), N/m."""
         root = np.sqrt(np.maximum(self.approaches(nearer, shifted), 0.0))
-        return np.asarray(self._lines.T @ (1.5 * self.line_stiffness * root[:, None] * self._lines))
+        return self._lines.T @ (1.5 * self.line_stiffness * root[:, None] * self._lines)
 
     def contacts(self, nearer: float, shifted: float) -> int:
         """How many contacts carry: four, two, or none."""

@@ -255,7 +255,7 @@ class FrictionalHalfSpace:
         found = _cells(box.response, box)
         if self._couples:
             found = found - _convolved(self._influence(ahead, False)[1], pressure)
-        return np.asarray(found)
+        return found
 
     def _influence(self, ahead: float, steady: bool) -> tuple[Array, Complex, float]:
         """Of a cell on those around it, up to the width of the grid, so far ahead, m.

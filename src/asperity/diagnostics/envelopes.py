@@ -193,7 +193,7 @@ def prewhitened(signal: ArrayLike, rate: float) -> Array:
     del values, size
     white = irfft(lines, count, overwrite_x=True)
     white *= np.sqrt(count)
-    return np.asarray(white)
+    return white
 
 
 def band_velocities(

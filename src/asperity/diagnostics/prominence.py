@@ -182,7 +182,7 @@ class Prominence:
         lines = (np.arange(HARMONICS + 1)[:, None] * fundamental + side).ravel()
         off = np.abs(frequency[:, None] - lines).min(axis=1)
         off = np.minimum(off, np.abs(frequency - np.rint(frequency / shaft) * shaft))
-        return np.asarray(off <= SPREAD * self.step)
+        return off <= SPREAD * self.step
 
     def depth(self, fundamental: float, deepest: float = 0.0) -> float:
         """Share by which the envelope rises and falls with a comb: root of the squares of its lines over its

@@ -187,7 +187,7 @@ def _thinned(samples: Array, mean: float, reached: float, view: Callable[[Array]
         kept = slice(first, first + 2 * half)
         total[kept] += fading * irfft(rfft(view(block))[: half + 1], 2 * half)
         weight[kept] += fading
-    return np.asarray(total / (weight * step))
+    return total / (weight * step)
 
 
 def _reached(values: Array, mean: float, times: int) -> float:

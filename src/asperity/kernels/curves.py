@@ -186,7 +186,7 @@ def shape_preserving(knots: NDArray, values: NDArray, places: NDArray) -> NDArra
     start = slopes[..., piece] - secant[..., piece]
     end = slopes[..., piece + 1] - secant[..., piece]
     rest = start - (2.0 * start + end) * (s / h) + (start + end) * (s / h) ** 2
-    return np.asarray(values[..., piece] + s * (secant[..., piece] + rest))
+    return values[..., piece] + s * (secant[..., piece] + rest)
 
 
 def continued_to_touch(knots: NDArray, root: NDArray) -> NDArray:

@@ -42,7 +42,7 @@ def inverse_stencil(table: NDArray) -> NDArray:
     # the fit may fall below zero, where steps would climb: it keeps a tenth of the least it stands for
     floor = 0.1 / float(symbol.max())
     coefficients[0] += max(0.0, floor - lowest)
-    return np.asarray(coefficients)
+    return coefficients
 
 
 @compiled(**INNER, **REASSOCIATE)

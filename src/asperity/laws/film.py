@@ -73,7 +73,7 @@ class WithFilm:
 
     def nearer(self, approaches: Array) -> Array:
         """Approaches (k,), m, less the film of a smooth contact at each."""
-        return np.asarray(approaches - self.thickness(self.film.of_bodies(approaches)))
+        return approaches - self.thickness(self.film.of_bodies(approaches))
 
     @property
     def _exponent(self) -> float:
@@ -83,7 +83,7 @@ class WithFilm:
     def thickness(self, force: Array) -> Array:
         """Film thickness (k,), m, under forces (k,), N; under hardly any force that of the lightest one."""
         share = np.maximum(force / self.load, LIGHTEST)
-        return np.asarray(self.film.central(self.load) * share**self._exponent)
+        return self.film.central(self.load) * share**self._exponent
 
     def curve(self, dry: ForceCurve) -> ForceCurve:
         """Force over approach with the film, of that of the dry bodies."""
@@ -101,4 +101,4 @@ class WithFilm:
 
     def _yielding(self, force: Array | float) -> Array:
         """−dh/dF of the film under forces (k,), N; m/N."""
-        return np.asarray(-self._exponent * self.thickness(np.asarray(force)) / force)
+        return -self._exponent * self.thickness(np.asarray(force)) / force

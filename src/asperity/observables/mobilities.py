@@ -49,7 +49,7 @@ def _predict(trial: Predictable, measured: Measured) -> Values:
         highest = max(float(frequency[-1]), case.numerics.highest_frequency)
         receptance = modal_receptance(over.model(highest), frequency, at, driven)
     found = 2j * np.pi * frequency * receptance
-    return np.asarray(found if np.iscomplexobj(measured.values) else np.abs(found))
+    return found if np.iscomplexobj(measured.values) else np.abs(found)
 
 
 def _free(case: Any) -> tuple[str, ...]:

@@ -74,7 +74,7 @@ class Response:
 
     def energies(self, levels: Array) -> Array:
         """What each band adds (b,)."""
-        return np.asarray(self.weights * energy_of(levels))
+        return self.weights * energy_of(levels)
 
     def level(self, levels: Array) -> float:
         """10 lg E(L), dB."""
@@ -83,7 +83,7 @@ class Response:
 
 def energy_of(levels: Array) -> Array:
     """Mean square of each band, µm², of levels in dB re 1 µm."""
-    return np.asarray(10.0 ** (levels / 10.0))
+    return 10.0 ** (levels / 10.0)
 
 
 def rms_of(levels: Array) -> float:
@@ -317,7 +317,7 @@ def _quieter(
 
 def _between(first: Array, second: Array) -> Array:
     """Half way in energies: limits that both keep are kept there, as they are convex in them."""
-    return np.asarray(10.0 * np.log10(0.5 * (energy_of(first) + energy_of(second))))
+    return 10.0 * np.log10(0.5 * (energy_of(first) + energy_of(second)))
 
 
 def _in_proportion(trial: Trial) -> Response:

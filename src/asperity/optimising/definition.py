@@ -81,7 +81,7 @@ def _psd(entry: Entry, tree: DataTree, law: str) -> Array:
     """PSD of a law over frequency (f,), mean over the places at which it is known."""
     found = tree[entry.group].to_dataset()[entry.name].sel(law=law)
     places = [dim for dim in found.dims if dim != spectra.FREQUENCY.name]
-    return np.asarray(found.mean(places).values)
+    return found.mean(places).values
 
 
 def _of_sensors(tree: DataTree, law: str) -> Array:

@@ -178,7 +178,7 @@ def _excited(wavenumber: Array, density: Array) -> NDArray[np.bool_]:
     weighted = density * wavenumber**CUT_OFF_SLOPE
     octaves = np.lib.stride_tricks.sliding_window_view(np.pad(weighted, BANDS // 2, mode="edge"), BANDS + 1)
     typical = np.median(octaves, axis=1)
-    return np.asarray(weighted > CUT_OFF * np.maximum.accumulate(typical))
+    return weighted > CUT_OFF * np.maximum.accumulate(typical)
 
 
 def _neighbours(wavenumber: Array, excited: NDArray[np.bool_]) -> Array:
@@ -383,7 +383,7 @@ def _target(contact_filter: ContactFilter, wavenumber: Array) -> Array:
     if contact_filter.normalise == "low-wavenumber":
         share = np.minimum(wavenumber / known[0], 1.0)
         found = share * found + (1.0 - share)
-    return np.asarray(found)
+    return found
 
 
 def _summed(contact_filter: ContactFilter, taps: Array) -> Array:

@@ -143,7 +143,7 @@ def _chance(table: xarray.Dataset, run: int) -> Numbers:
     Of records that know nothing of each other; runs over the same texture differ by less.
     """
     deviation = table[DEVIATION].values
-    return np.asarray(np.sqrt(deviation[0] ** 2 + deviation[run] ** 2))
+    return np.sqrt(deviation[0] ** 2 + deviation[run] ** 2)
 
 
 def _sure(table: xarray.Dataset, run: int) -> Flags:

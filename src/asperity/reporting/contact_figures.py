@@ -221,7 +221,7 @@ def _drawn_states(tree: DataTree, lines: Lines) -> list[float]:
 
 
 def _level(ratio: Numbers) -> Numbers:
-    return np.asarray(20 * np.log10(np.maximum(ratio, 10 ** (FLOOR / 20 - 1))))
+    return 20 * np.log10(np.maximum(ratio, 10 ** (FLOOR / 20 - 1)))
 
 
 @figure(

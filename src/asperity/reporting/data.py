@@ -263,7 +263,7 @@ def doubtful(tree: DataTree, product: Entry) -> chart.Flags:
         return np.zeros(tree[product.group].sizes[dim], dtype=bool)
     known = product is spectra.BAND_TIME_PRODUCT and present(tree, spectra.START_SHARE)
     start = values(tree, spectra.START_SHARE) if known else 0.0
-    return np.asarray(say_little(values(tree, product), start))
+    return say_little(values(tree, product), start)
 
 
 # --- numbers in words

@@ -92,7 +92,7 @@ def radiated(force: Array, step: float, centre: Array, level: Array) -> Array:
         inside = (frequency >= middle / HALF_BAND) & (frequency < middle * HALF_BAND)
         if energy > 0.0:
             gain[inside] = np.sqrt(wanted / energy)
-    return np.asarray(irfft(gain * spectrum, n))
+    return irfft(gain * spectrum, n)
 
 
 RATE = 48_000
@@ -244,4 +244,4 @@ def at_rate(signal: Array, step: float) -> Array:
     """
     n = len(signal)
     soft = (signal - signal.mean()) * tukey(n, min(2.0 * FADE / (n * step), 1.0))
-    return np.asarray(resample(soft, max(round(n * step * RATE), 2)))
+    return resample(soft, max(round(n * step * RATE), 2))

@@ -165,7 +165,7 @@ def in_contact(law: Prepared | SteppedLaw, first: int, force: Array, approach: A
             return np.ones(force.shape, dtype=bool)
         if law.damped_in_flight:
             force = evaluate_all(law, approach, first)[0]
-    return np.asarray(force > 0.0)
+    return force > 0.0
 
 
 def steps_beyond(law: Prepared, first: int, approach: Array) -> int:

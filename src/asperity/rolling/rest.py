@@ -271,7 +271,7 @@ def standing(
 def _on_support(ground: Ground) -> NDArray[np.bool_]:
     """Which contacts (n,) start where no mode of the structure moves."""
     largest, steepest = (np.abs(each).max(axis=1, initial=0.0) for each in (ground.shapes, ground.rates))
-    return np.asarray(largest <= ON_SUPPORT * steepest)
+    return largest <= ON_SUPPORT * steepest
 
 
 def _rolled_up(system: System, motion: Motion, force: Array, steps: int) -> tuple[Array, Array]:

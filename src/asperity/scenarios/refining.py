@@ -115,7 +115,7 @@ def _long_waves(heights: Array, every: int) -> Array:
         series = np.moveaxis(fft.dct(found, axis=axis), axis, 0)
         series[points // every + 1 :] = 0.0  # term k has the wavelength 2 points/k
         found = fft.idct(np.moveaxis(series, 0, axis), axis=axis)
-    return np.asarray(found)
+    return found
 
 
 NO_SAMPLES = "nothing is reduced from samples here"

@@ -72,7 +72,7 @@ class LateralWaves:
     def receptance(self, x: float, x0: float) -> Complex:
         """Motion at `x` per force at `x0`, (m, m, f); positions from any support, m."""
         found = self.receptances([max(x, x0)], min(x, x0))[0]
-        return np.asarray(found if x >= x0 else found.swapaxes(0, 1))
+        return found if x >= x0 else found.swapaxes(0, 1)
 
     def receptances(self, places: ArrayLike, x0: float) -> Complex:
         """Motion at places (x,), none before `x0`, per force there, (x, m, m, f); from any support, m."""
@@ -196,7 +196,7 @@ class LateralTrack(LateralParameters):
         even = self.foot_width**2 / 12.0
         roll = _share(self.pad_roll_stiffness, track.pad_stiffness, even)
         found[-1, -1] += roll * track.springs["pad"].stiffness(omega)
-        return np.asarray(found)
+        return found
 
     @cached_property
     def _moved_sideways(self) -> Track:

@@ -154,7 +154,7 @@ class Mobility:
 
 def _squared(sent: Complex, form: Complex) -> Array:
     """Sum over i and j of s_i s_j* form_ij (f,)."""
-    return np.asarray(np.einsum("if,jf,ijf->f", sent, sent.conj(), form).real)
+    return np.einsum("if,jf,ijf->f", sent, sent.conj(), form).real
 
 
 def _sent(span: Span, x0: float) -> tuple[Complex, Complex]:

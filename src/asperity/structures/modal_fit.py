@@ -65,7 +65,7 @@ def vector_fit(
 def least_squares(matrix: Array, right: Array, smallest: float | None = None) -> Array:
     """Least squares in columns of size one; singular values below a share of the largest are left out."""
     size = np.linalg.norm(matrix, axis=0)
-    return np.asarray((np.linalg.lstsq(matrix / size, right, rcond=smallest)[0].T / size).T)
+    return (np.linalg.lstsq(matrix / size, right, rcond=smallest)[0].T / size).T
 
 
 def real_basis(poles: Complex) -> NDArray[np.bool_]:

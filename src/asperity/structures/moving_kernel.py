@@ -321,7 +321,7 @@ class _Begun:
         rooms = self.way.rooms
         if not hasattr(rooms, "both"):
             rooms.both = np.empty((2, self.way.positions, self.way.near.omega.size), complex)
-        return np.asarray(rooms.both)
+        return rooms.both
 
 
 def _shapes(grid: HatResponse, bay: int, nodes: Array) -> tuple[Complex, Complex]:

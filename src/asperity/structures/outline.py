@@ -264,7 +264,7 @@ def _inside(points: Array, around: Array) -> NDArray[np.bool_]:
     at = points[:, 1:]
     spanned = (z > at) != (z2 > at)
     beyond = r + (at - z) * (r2 - r) / np.where(z2 == z, 1.0, z2 - z) > points[:, :1]
-    return np.asarray(np.sum(spanned & beyond, axis=1) % 2 == 1)
+    return np.sum(spanned & beyond, axis=1) % 2 == 1
 
 
 def _distances(points: Array, a: Array, b: Array) -> Array:

@@ -115,7 +115,7 @@ class LoadedRollers:
         follows = inner / np.where(outer > 0.0, inner + outer, 1.0)
         taken = of_contact * ((1.0 - follows) ** 2 * (inner > 0.0) + follows**2 * (outer > 0.0))
         normal = _followed(of, self.azimuth)[..., 0, FORCES]
-        return np.asarray(np.einsum("mz,mzi,mzj->mij", taken, normal, normal))
+        return np.einsum("mz,mzi,mzj->mij", taken, normal, normal)
 
     @property
     def carrying_length(self) -> Array:

@@ -222,7 +222,7 @@ class WheelModes:
     def heard(self, place: float = 0.0) -> NDArray[np.bool_]:
         """Whether each mode (p,) answers to a radial force at a place, m."""
         largest = np.maximum(np.abs(self.radial).max(axis=1), np.abs(self.axial).max(axis=1))
-        return np.asarray(np.abs(self.at(place)[0]) > SILENT * largest)
+        return np.abs(self.at(place)[0]) > SILENT * largest
 
     def table(self, place: float = 0.0) -> Array:
         """Table of modes as `wheel.modes` of a case takes it (s, 6), of a contact at a place, m.

@@ -88,7 +88,7 @@ def resonant_response(natural: Array, ratios: Array, shares: Array, rate: float,
     along = 2.0 * decay * np.cos(phase) + (natural**2 - 2.0 * decay**2) / damped * np.sin(phase)
     response = (along * np.exp(-np.multiply.outer(time, decay))) @ shares
     response[0] *= 0.5  # it begins with a jump, between whose ends the first sample lies
-    return np.asarray(response / rate)
+    return response / rate
 
 
 def path_to_sensor(given: Any, rate: str | float | None) -> MeasuredPath | DrawnPath | None:
@@ -216,7 +216,7 @@ def through_path(signal: ArrayLike, rate: float, response: ArrayLike, response_r
     lines = rfft(values, pieces * ours)
     transfer = rfft(weights, pieces * theirs)
     known = min(lines.size, transfer.size)
-    return np.asarray(irfft(lines[:known] * transfer[:known], pieces * ours)[: values.size])
+    return irfft(lines[:known] * transfer[:known], pieces * ours)[: values.size]
 
 
 def with_noise(
@@ -251,4 +251,4 @@ def with_noise(
     values = finite_array("signal", signal, "a series of finite numbers", shape=(None,))
     require((below is None) != (rms is None), "level of the noise", "both or none", "one of below and rms")
     spread = rms or 0.0 if below is None else float(values.std()) * 10.0 ** (-below / 20.0)
-    return np.asarray(values + spread * np.random.default_rng(seed).standard_normal(values.size))
+    return values + spread * np.random.default_rng(seed).standard_normal(values.size)

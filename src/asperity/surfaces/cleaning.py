@@ -102,7 +102,7 @@ def spikes(surface: "HeightMap") -> NDArray[np.bool_]:
     782. The local median is what ISO 16610-49 and -71 build robust filters on.
     """
     distance = np.abs(surface.heights - _local_median(surface.heights))
-    return np.asarray(distance > FARTHEST * MAD * _typical(distance))
+    return distance > FARTHEST * MAD * _typical(distance)
 
 
 def without_spikes(surface: "HeightMap") -> "HeightMap":

@@ -73,7 +73,7 @@ class Edges:
     @property
     def sound(self) -> NDArray[np.bool_]:
         """Cells with the heights of the sound surface, though they may lie beyond the edge in part."""
-        return np.asarray(self.places > FIRST)
+        return self.places > FIRST
 
     @property
     def crossed(self) -> NDArray[np.bool_]:

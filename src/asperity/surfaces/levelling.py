@@ -144,7 +144,7 @@ def _resampled(lines: Array, old_step: float, new_step: float) -> Array:
     mirrored = np.concatenate([values[:, before], values, values[:, beyond]], axis=-1)
     positions = np.concatenate([-centres[before], centres, 2 * length - centres[beyond]])
     spline = scipy.interpolate.make_interp_spline(positions, mirrored, k=5, axis=-1)
-    return np.asarray(spline((np.arange(count) + 0.5) * new_step))
+    return spline((np.arange(count) + 0.5) * new_step)
 
 
 def without_polynomial(heights: Array, degree: int, *, into: Array | None = None) -> Array:

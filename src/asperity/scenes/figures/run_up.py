@@ -22,7 +22,7 @@ LEVEL = "amplitude / dB re 1 µm/s²"
 
 def _level(amplitude: chart.Numbers) -> chart.Numbers:
     """Levels of amplitudes, m/s², dB."""
-    return np.asarray(20.0 * np.log10(np.maximum(amplitude, 1e-6 * ACCELERATION) / ACCELERATION))
+    return 20.0 * np.log10(np.maximum(amplitude, 1e-6 * ACCELERATION) / ACCELERATION)
 
 
 def _orders(tree: DataTree) -> list[tuple[str, float]]:

@@ -201,4 +201,4 @@ def scaled(array: NDArray[Any], unit: float, source: str) -> Array:
     numbers = array.astype(np.float64)
     with np.errstate(over="ignore", invalid="ignore"):  # infinite heights are refused by name afterwards
         numbers *= unit
-    return np.asarray(numbers)
+    return numbers

@@ -93,14 +93,14 @@ def missing_in(raw: NDArray[Any], kind: str, *, old: bool) -> NDArray[np.bool_]:
     ndarray of bool
     """
     if kind in BEYOND:
-        return np.asarray(~(np.abs(raw) < BEYOND[kind]))
+        return ~(np.abs(raw) < BEYOND[kind])
     ends = np.iinfo(kind)
     signed = np.dtype(kind).kind == "i"
     if old:
-        return np.asarray((raw == ends.max) | np.isnan(raw))
+        return (raw == ends.max) | np.isnan(raw)
     if signed:
-        return np.asarray((raw == ends.min) | np.isnan(raw))
-    return np.asarray(((raw == ends.max) & (ends.bits > 8)) | np.isnan(raw))
+        return (raw == ends.min) | np.isnan(raw)
+    return ((raw == ends.max) & (ends.bits > 8)) | np.isnan(raw)
 
 
 def _binary_header(data: bytes, source: str) -> tuple[dict[str, str], bytes]:
