@@ -384,7 +384,8 @@ class ListOf(ValueKind):
             received = count_of(len(value), "value") if len(value) else "an empty list"
             remedy = "Add to it, or remove the key."
             raise InputError("value", received, f"at least {self.least}, each {self.each.allowed}", remedy)
-        read, errors = [], []
+        read = []
+        errors = []
         for number, item in enumerate(value, 1):
             try:
                 read.append(self.each(item, origin))
@@ -438,7 +439,8 @@ class MaterialOrName(ValueKind):
 
 def _own_material(given: Mapping[Any, Any], origin: Origin) -> Material:
     """Material of numbers with units, and of a name and a source if there are; all errors at once."""
-    optional, read = {"name", "citation"}, dict[str, Any]()
+    optional = {"name", "citation"}
+    read = dict[str, Any]()
     unknown = sorted(map(str, given.keys() - _OF_A_MATERIAL.keys()))
     numbers = [name for name in _OF_A_MATERIAL if name not in optional]
     allowed = ", ".join(_OF_A_MATERIAL)

@@ -115,7 +115,8 @@ class BeamKeys(RolledOver):
 
         ends = {"simply-supported": 0.0, "clamped": math.inf}.get(self.support)
         at_ends = [] if ends is None else [Support(x, rotational_stiffness=ends) for x in (0.0, self.length)]
-        stiffness, loss = self.support_stiffness, self.support_loss_factor
+        stiffness = self.support_stiffness
+        loss = self.support_loss_factor
         return [*at_ends, *(Support(x, stiffness, loss_factor=loss) for x in self.supports or ())]
 
     def problems(self) -> Iterator[InputError]:

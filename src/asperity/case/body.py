@@ -94,7 +94,8 @@ class FlatOnTread(MeasuredLine):
     @property
     def flat(self) -> tuple[float, float] | None:
         """Depth and length of the flat, m; None without one."""
-        depth, length = self.flat_depth, self.flat_length
+        depth = self.flat_depth
+        length = self.flat_length
         if depth is None:
             return None if length is None else (self._chord_depth(length), length)
         chord = math.sqrt(8.0 * self.radius * depth)

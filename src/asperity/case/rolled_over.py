@@ -291,7 +291,8 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
             yield "measured sleepers", f"{name_of(self.sleeper_table)}: {met}"
         if self.pad_table is None:
             return
-        preloads, said = preloads_of(self._pad_rows), name_of(self.pad_table)
+        preloads = preloads_of(self._pad_rows)
+        said = name_of(self.pad_table)
         if self.pad_preload is not None:
             at, least, most = (1e-3 * each for each in (self.pad_preload, preloads[0], preloads[-1]))
             said += f" at {rounded(at)} kN, measured from {rounded(least)} to {rounded(most)} kN"

@@ -170,7 +170,8 @@ class Case(AnyCase):
     @cached_property
     def smooth_contact(self) -> Hertz:
         """Contact of the smooth bodies, by their relative curvatures along and across the path."""
-        body, over = self.rolling, self.rolled_over
+        body = self.rolling
+        over = self.rolled_over
         across = over.radius_across if body.groove_radius is None else -body.groove_radius
         named = "radius and {0}.raceway_radius (m)", "transverse_radius and {0}.groove_radius (m)"
         pairs = zip(named, ((body.radius, body.raceway_along), (body.across, across)), strict=True)
@@ -477,7 +478,9 @@ class Case(AnyCase):
 
     def _problems_of_room(self) -> Iterator[InputError]:
         """The contacts stay on what they roll over for as long as they are rolled, in steps that are few."""
-        start, rolled, (first, last) = self.record_start, self.rolled_time, self.rolled_range
+        start = self.record_start
+        rolled = self.rolled_time
+        first, last = self.rolled_range
         over = self.over_name
         time = self.settled_time + rolled
         begin, end = self.room or (-math.inf, math.inf)
@@ -513,7 +516,8 @@ class Case(AnyCase):
 
     def _problems_of_over(self) -> Iterator[InputError]:
         """What is rolled over suits the run; a joint is on the path; what a track alone has has a track."""
-        (first, last), joint = self.rolled_range, self.surface.joint_position
+        first, last = self.rolled_range
+        joint = self.surface.joint_position
         if joint is not None and not first <= joint <= last:
             allowed = f"a position that is rolled over, {first:g} m to {last:g} m"
             yield InputError("surface.joint_position", f"{joint:g} m", allowed)

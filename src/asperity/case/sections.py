@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 
 MOST_CELLS = 2048  # along one side of the window
 DURATION = Quantity("s", above=0)
-_HEARD, _NOTHING = "0 dB to 180 dB: sound that is heard lies between", "nothing was measured"
+_HEARD = "0 dB to 180 dB: sound that is heard lies between"
+_NOTHING = "nothing was measured"
 DURATION_OR_ZERO = Quantity("s", at_least=0)
 
 

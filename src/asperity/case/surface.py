@@ -56,6 +56,8 @@ DEFECTS = (
     "joint_position",
 )
 """Keys of what is on top of a texture."""
+MAP_KEYS = {name: name for name in ("array", "height_unit", "pixel", "index", "fill", "spikes")}
+"""Keys of a file with maps, by the hints to its reader that they are."""
 OF_RAILS = ("line_distance", "processing", *DEFECTS)
 """Keys of a surface that rails have more often than beams."""
 
@@ -151,7 +153,7 @@ class MeasuredMap(Section):
         yield from super().problems()
         yield from _foreign(self, "file", ("array", "height_unit", "pixel", "recipe"))
         if self.recipe is not None:
-            for name in ("array", "height_unit", "pixel", "index", "fill", "spikes"):
+            for name in MAP_KEYS:
                 if (value := getattr(self, name)) not in (None, False):
                     remedy = f"Write it into {self.recipe.name}."
                     yield InputError(name, shown(value), "nothing beside a recipe, which says it", remedy)

@@ -113,7 +113,8 @@ def read_levels(table: TableSource) -> tuple[Array, Array]:
     levels = rows[:, 1:]
     level = levels[:, 0] if levels.shape[1] == 1 else energy_sum(levels) - 10.0 * np.log10(levels.shape[1])
     order = np.argsort(-wavelength)
-    wavelength, level = wavelength[order], level[order]
+    wavelength = wavelength[order]
+    level = level[order]
     if wavelength[-1] <= 0:
         raise InputError(
             name_of(table), f"a wavelength of {wavelength[-1]:g} m", "wavelengths greater than 0"
@@ -177,7 +178,8 @@ def read_mode_table(table: TableSource) -> Array:
     """Read the modes of a wheel (n, 3), `MODES`, or with how they move disc and tread (n, 6), `RADIATION`."""
     rows = read_table(table, MODES, RADIATION)
     frequency, ratio, mass, diameters, *velocities = np.pad(rows, ((0, 0), (0, 6 - rows.shape[1]))).T
-    whole, allowed = "a whole number, zero or more", "zero or more, per radial velocity at the contact"
+    whole = "a whole number, zero or more"
+    allowed = "zero or more, per radial velocity at the contact"
     for what, values, wrong, right in (
         ("a number of nodal diameters", diameters, (diameters < 0) | (diameters % 1 != 0), whole),
         *(("an rms velocity", each, each < 0, allowed) for each in velocities),

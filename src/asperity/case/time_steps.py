@@ -52,7 +52,8 @@ def resolving(case: "Case", usual: float) -> float:
 
 def longest_step(case: "Case", step: float) -> float:
     """Time in s up to which a step of about this length, s, is short for all that it has to resolve."""
-    over, hertz = case.rolled_over, case.smooth_contact
+    over = case.rolled_over
+    hertz = case.smooth_contact
     stiffness = hertz.tangent_stiffness(hertz.approach(case.rolling.contact_load))
     with PhysicsWarning.ignored():
         try:

@@ -18,6 +18,7 @@ from asperity.cli.running import doubted
 from asperity.fitting.fitted import Fitted
 from asperity.fitting.running import chosen_free, fitted, measured_for
 from asperity.observables import observable
+from asperity.observables.beside_result import magnitudes
 from asperity.observables.reading import read_where
 from asperity.progress import progress_bar
 from asperity.reporting import data
@@ -177,10 +178,6 @@ def _document(found: Fitted) -> dict[str, Any]:
     }
 
 
-def _real(values: Any) -> Array:
-    return np.asarray(np.abs(values) if np.iscomplexobj(values) else values, dtype=float)
-
-
 def _compared(found: Fitted) -> list[Compared]:
     """Measurements beside what is predicted; of complex values the magnitude."""
     compared = []
@@ -195,9 +192,9 @@ def _compared(found: Fitted) -> list[Compared]:
                 of.axis,
                 told,
                 at=each.at,
-                measured=_real(each.values),
-                before=_real(before),
-                fitted=_real(after),
+                measured=magnitudes(each.values),
+                before=magnitudes(before),
+                fitted=magnitudes(after),
                 deviation=np.broadcast_to(np.asarray(deviation, dtype=float), each.at.shape),
                 decade=of.decade,
             )

@@ -165,19 +165,23 @@ class DirectOnPath:
     def settle(self, step: int, approach: float, compliance: float) -> float:
         """Elastic force, N, of bodies that yield to it by a compliance, m/N; approach without force, m."""
         if self._step != step:
-            self._step, self._heights, self._tried = step, self._under(step), False
+            self._heights = self._under(step)
+            self._step = step
+            self._tried = False
             self._set_edges(step)
         if self._tried:
             self.start[:] = self.pressure
             self.block.solved[0] = 1
         else:
             self._start(step)
-        self.block.approaches[0], self.block.rows[:] = approach, self._heights
+        self.block.approaches[0] = approach
+        self.block.rows[:] = self._heights
         space = self.half_space
         solved = int(self.counts[0])
         rtol = min(self.law.rtol, AT_REST) if self._last is None else self.law.rtol
         space.solve_block(self.block._replace(compliance=compliance * space.cell_area, rtol=rtol))
-        self._tried, overlap = True, approach - float(self.block.room.lowest.min())
+        self._tried = True
+        overlap = approach - float(self.block.room.lowest.min())
         if self.counts[0] == solved:
             self.pressure[:] = 0.0
             return 0.0
@@ -189,7 +193,8 @@ class DirectOnPath:
         if self._tried:
             kept = self._before.pressure if self._before else np.empty_like(self.pressure)
             kept[:] = self.pressure
-            self._before, self._last = self._last, Accepted(kept, round(self.offsets[step]))
+            self._before = self._last
+            self._last = Accepted(kept, round(self.offsets[step]))
         self._tried = False
 
     def state(self) -> dict[str, NDArray[Any]]:

@@ -335,7 +335,8 @@ class Materials:
     @property
     def heights(self) -> Array:
         """Heights (rows, ny) of the path with its defects, m, peaks positive, for `cells` (SURFACE)."""
-        sound, faults = self.sound_heights, self.faults
+        sound = self.sound_heights
+        faults = self.faults
         return sound if faults is None else sound + faults
 
     @property

@@ -101,7 +101,8 @@ def _chosen_band(trial: Predictable) -> dict[str, Any]:
 
 def _line(trial: Predictable, measured: Measured) -> Values:
     """The largest amplitude near each frequency; NaN beyond the envelope that was computed."""
-    lines, amplitude = trial.collected["envelope_frequency"], trial.collected["envelope"]
+    lines = trial.collected["envelope_frequency"]
+    amplitude = trial.collected["envelope"]
     found = []
     for at in measured.at:
         near = np.abs(lines - at) <= NEAR * at

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -59,11 +60,7 @@ def with_tables_beside(case: AnyCase, tree: DataTree) -> DataTree:
 
 def _as_in(case: AnyCase, conditions: Mapping[str, Any]) -> bool:
     """Whether a case has keys, by their dotted names, as they were in a measurement."""
-    for dotted, value in conditions.items():
-        title, _, name = dotted.rpartition(".")
-        if content(getattr(getattr(case, title) if title else case, name)) != content(value):
-            return False
-    return True
+    return all(content(attrgetter(dotted)(case)) == content(value) for dotted, value in conditions.items())
 
 
 def laid_beside(run: RunCase, measured: Sequence[Measured]) -> Values:
@@ -84,8 +81,8 @@ def laid_beside(run: RunCase, measured: Sequence[Measured]) -> Values:
         }
         numbers: dict[Any, Array] = {
             schema.AT: each.at,
-            schema.VALUE: _size(each.values),
-            schema.COMPUTED: _size(predicted),
+            schema.VALUE: magnitudes(each.values),
+            schema.COMPUTED: magnitudes(predicted),
             schema.DEVIATION: deviation,
             schema.UNCERTAINTY: uncertainty,
         }
@@ -106,6 +103,6 @@ _LISTED = (
 )
 
 
-def _size(values: Any) -> Array:
+def magnitudes(values: Any) -> Array:
     """Values, of complex ones their magnitudes."""
     return np.asarray(np.abs(values) if np.iscomplexobj(values) else values, dtype=float)

@@ -34,7 +34,8 @@ def no_structure(case: AnyCase) -> str:
 
 def _predict(trial: Predictable, measured: Measured) -> Values:
     """Mobility between the places, of a rail by default at mid-span, of a structure in its middle."""
-    case, frequency = trial.case, measured.at
+    case = trial.case
+    frequency = measured.at
     track = keys_of_track(case)
     if track is not None:
         rail = track.model()

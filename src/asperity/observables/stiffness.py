@@ -26,7 +26,8 @@ def _collect(tree: DataTree) -> Collected:
 
 def _predict(trial: Predictable, measured: Measured) -> Values:
     """Tangent stiffness dF/dr at each load; NaN beyond the loads that were computed."""
-    load, stiffness = trial.collected["contact_load"], trial.collected["contact_stiffness"]
+    load = trial.collected["contact_load"]
+    stiffness = trial.collected["contact_stiffness"]
     known = (load > 0.0) & (stiffness > 0.0)
     place = np.log(load[known])
     over = np.log(stiffness[known])

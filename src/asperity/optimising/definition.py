@@ -160,7 +160,8 @@ def bands_of(case: scene.Case, longest: float | None, shortest: float | None) ->
     else:
         wavelength, levels = _measured(case)
     held = wavelength / HALF_BAND > 2.06 * case.contact.spacing
-    wavelength, levels = wavelength[held], levels[held]
+    wavelength = wavelength[held]
+    levels = levels[held]
     low = longest or case.speed / LOWEST_HEARD
     high = shortest or case.speed / case.numerics.highest_frequency
     changed = (wavelength < low * HALF_BAND) & (wavelength > high / HALF_BAND)

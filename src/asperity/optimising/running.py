@@ -253,7 +253,8 @@ def _rolled(base: scene.Case, aim: Aim, measure: Measure, bands: Bands, progress
         return {"frequency": line_frequencies(tree), "density": measure.density(tree, aim.law)}
 
     kept = made(Store(), form.case_key("texture", FORMAT, case, aim.quantity, aim.law), rolled)
-    frequency, density = kept["frequency"], kept["density"]
+    frequency = kept["frequency"]
+    density = kept["density"]
     energies = np.maximum(band_energies(frequency, density, *bands.edges(case.speed)), 0.0)
     whole = float(density.sum() * (frequency[1] - frequency[0]))
     return Trial(bands.levels[bands.changed], bands.lateral, energies, max(whole - energies.sum(), 0.0))

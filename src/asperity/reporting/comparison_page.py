@@ -227,7 +227,8 @@ def _contacts(of: ComparedRuns) -> Drawn:
         up = Axis(f"contact stiffness k_c / ({symbol})", low=0.0)
         yield Panel(Axis("approach / µm"), up, tuple(lines), height=3.9)
     if "filter" in table:
-        wavenumber, level = table["wavenumber"].values, table["filter"].values
+        wavenumber = table["wavenumber"].values
+        level = table["filter"].values
         known = np.isfinite(level)
         filters = [_of_run(of, r, wavenumber, each, "") for r, each in enumerate(level) if known[r].any()]
         kept = wavenumber[known.any(axis=0)]
@@ -312,8 +313,10 @@ def _numbers_table(table: xarray.Dataset) -> ReportTable:
 
 def _difference_table(of: ComparedRuns, name: str) -> ReportTable:
     """Differences to the first run in each band, and of the A-weighted totals."""
-    table, (first, *others) = of.table, of.names
-    difference, weighted = table[f"{name}_difference"].values, table[f"{name}_a_difference"].values
+    table = of.table
+    first, *others = of.names
+    difference = table[f"{name}_difference"].values
+    weighted = table[f"{name}_a_difference"].values
     kept = np.isfinite(difference[1:]).any(axis=(0, 1))
     bands = number_cells(table["band"].values[kept], data.nominal_band)
     columns: dict[str, list[Cell]] = {"band / Hz": [*bands, *text_cells(["dB(A)"], "total")]}

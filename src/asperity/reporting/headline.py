@@ -189,7 +189,8 @@ def _loss(tree: DataTree, main: str) -> Iterator[HeadlineNumber]:
         value = "–"
         told = f"{main} cannot lose it: its force may pull"
     elif not share:
-        value, told = "0 %", "contact is never lost"
+        value = "0 %"
+        told = "contact is never lost"
     yield HeadlineNumber("time without contact", value, told)
 
 

@@ -47,8 +47,12 @@ UNDATED = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {}}
 """So that files of the same numbers are the same."""
 DOTS = 150
 """Per inch, of a PNG, and of what is no line in the others."""
-LETTER, ROW, HANDLE = 0.068, 13.0, 10
-"""Width of a letter in inches, height of a row of a legend in points, letters that a handle takes."""
+LETTER = 0.068
+"""Width of a letter in inches."""
+ROW = 13.0
+"""Height of a row of a legend in points."""
+HANDLE = 10
+"""Letters that the handle of a legend takes."""
 OPPOSITE = 32.0
 """Points that an axis opposite takes above a panel."""
 HATCHES = {"/": "///", "\\": "\\\\\\", "x": "xxx", ".": "..", "-": "---"}

@@ -245,7 +245,8 @@ def running_in(tree: DataTree, lines: Lines) -> Drawn:
         count = round(2 * STRETCH * radius / (lines.at[1] - lines.at[0]))
     first = int(np.clip(np.argmax(lowering) - count // 2, 0, max(len(lines.at) - count, 0)))
     x, before, after = (numbers[first : first + max(count, 2)] for numbers in (lines.at, before, after))
-    (along, unit), (height, symbol) = length_unit(float(np.ptp(x))), length_unit(float(np.ptp(before)))
+    along, unit = length_unit(float(np.ptp(x)))
+    height, symbol = length_unit(float(np.ptp(before)))
     drawn = (
         Line(x / along, before / height, "before running-in", MUTED, LOOKS[1][1], 0.9),
         Line(x / along, after / height, "after", BLUE),

@@ -91,7 +91,8 @@ def doubt_sizes(case: Case, over: object) -> None:
     rolling = case.rolling
     name = case.ROLLING
     surface = case.surface
-    mass, load = rolling.contact_mass, rolling.contact_load
+    mass = rolling.contact_mass
+    load = rolling.contact_load
     carried = mass + sum(rolling.masses or ()) * len(rolling.positions) / len(rolling.offsets)
     solid = 4.0 / 3.0 * math.pi * rolling.radius**3 * rolling.material.density
     if mass < HOLLOW * solid:
@@ -142,14 +143,17 @@ def _doubt_lengths(case: Case) -> None:
     """Warn of lengths that do not fit to what rolls, or to how far it rolls."""
     first, last = case.rolled_range
     path = f"{rounded(last - first)} m are rolled"
-    sample, window = case.contact.sample_length, case.contact.window
+    sample = case.contact.sample_length
+    window = case.contact.window
     if sample is not None and sample > max(MANY_WINDOWS * window, last - first):
         told = f"{path}, and the window is {rounded(1e3 * window)} mm wide"
         _warn("contact.sample_length", sample, "m", told, "mm")
-    deep, dip = case.surface.joint_depth, case.surface.joint_length
+    deep = case.surface.joint_depth
+    dip = case.surface.joint_length
     if deep is not None and dip > 2.0 * (last - first):
         _warn("surface.joint_length", dip, "m", f"{path}, so that there is no more of it than a slope", "mm")
-    body, name = case.rolling, case.ROLLING
+    body = case.rolling
+    name = case.ROLLING
     round_body = f"a body of a radius of {rounded(1e3 * body.radius)} mm"
     for key in ("raceway_radius", "transverse_radius", "groove_radius"):
         bent = getattr(body, key)
@@ -184,7 +188,8 @@ def _doubt_lengths(case: Case) -> None:
 
 def _doubt_above(case: Case) -> None:
     """Warn of masses, springs and dampers above the contacts that do not fit to each other."""
-    body, name = case.rolling, case.ROLLING
+    body = case.rolling
+    name = case.ROLLING
     lightest = min(body.masses or (math.inf,))
     if lightest < LIGHT_ABOVE * body.contact_mass:
         told = f"what it rests on has {rounded(body.contact_mass)} kg on each contact"

@@ -193,7 +193,8 @@ def _check_half_space(case: scene.Case, hertz: Hertz, load: float) -> None:
 
 def _doubt_wheel(case: scene.Case) -> None:
     """Warn of a wheel on a rail that is hardly meant as it was given."""
-    wheel, name = case.rolling, case.ROLLING
+    wheel = case.rolling
+    name = case.ROLLING
     if not isinstance(case.rolled_over, TrackKeys):
         return
     if wheel.is_drawn:
@@ -240,7 +241,8 @@ def _measured_gap(case: scene.Case, hertz: Hertz, load: float) -> tuple[Array, H
     for _ in range(10):
         inside = np.abs(y) <= max(half, 3 * case.contact.spacing)
         curvature = np.polynomial.polynomial.polyfit(y[inside], gap[inside], 2)[2]
-        received, allowed = "bodies that fit each other across the path", "a gap that opens on both sides"
+        received = "bodies that fit each other across the path"
+        allowed = "a gap that opens on both sides"
         require(curvature > 0.0, both, received, allowed)
         hertz = replace(hertz, radius_y=float(0.5 / curvature))
         half = hertz.semi_axes(hertz.approach(load))[1]

@@ -134,9 +134,11 @@ FAR = 1.0
 """Distance to the nearest point beyond which a place is off the map."""
 MARGIN = 1.1
 """Ratio by which k a of the highest band may lie beyond those of the points."""
-REACH, TREND, NOISE = 2.0, 0.04, 0.1
-"""Distance over which errors are alike; shares of a trend across the map, and of what chance adds to a point,
-in the variance of their logarithms."""
+REACH = 2.0
+"""Distance over which errors are alike."""
+TREND, NOISE = 0.04, 0.1
+"""Shares of a trend across the map, and of what chance adds to a point, in the variance of their logarithms.
+"""
 LONG, WIDE, TINY = 10.0, 1.0, 1e-4
 """Lengths of correlation beyond which nothing changes, in contacts, along and across; least ratio of all."""
 LOST = 0.1
@@ -193,7 +195,8 @@ class LawChoice:
         """Say which law to take, the errors to expect, and where the case lies: names and values."""
         yield "law to take", self._advice()
         yield "expected errors, dB", f"{', '.join(map(str, self.expected.values()))}; {MEANING}"
-        place, near = self.place, self.nearest
+        place = self.place
+        near = self.nearest
         off = ": off the map, so that the expected errors are guesses" if self.off_map else ""
         yield (
             "place on the map",
@@ -242,7 +245,8 @@ class LawChoice:
 
 def unmapped(prepared: PreparedCase) -> str:
     """Say why the map of law errors cannot know of a case; empty where nothing keeps it from that."""
-    case, textures = prepared.case, prepared.textures
+    case = prepared.case
+    textures = prepared.textures
     if textures.path is None:
         return "it holds textures, and of a line nothing is known beside it"
     seen = f"{UNMAPPED} solves the contact as it is"

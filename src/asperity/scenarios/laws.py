@@ -119,7 +119,8 @@ class ReducedCase(PreparedCase):
         assert path is not None
         loaded = axes[:, 0] > 0.0
         within = np.minimum(axes[loaded], 0.5 * path.shape[1] * path.spacing[1])
-        spacing, start = self.shape.spacing, self.textures.start
+        spacing = self.shape.spacing
+        start = self.textures.start
         return self._over_defects(areal_texture(path, spacing, approaches[loaded], within, start))
 
     @property

@@ -297,7 +297,8 @@ class Work:
     @property
     def told(self) -> str:
         """The time in words: of the processor, on the clock, what most of it is for, and what is compiled."""
-        processor, clock = self.time.processor, self.time.clock
+        processor = self.time.processor
+        clock = self.time.clock
         said = f"about {_coarsely(processor)} of processor time"
         if _coarsely(clock) != _coarsely(processor):
             said += f", {_coarsely(clock)} on the clock of an idle machine"

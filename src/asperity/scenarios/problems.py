@@ -91,7 +91,8 @@ def _problem_of_heights(prepared: PreparedCase) -> InputError | None:
     textures = prepared.textures
     nx, ny = shape.body.shape
     maps = textures.maps
-    depth, wave = case.surface.corrugation, case.surface.corrugation_wavelength
+    depth = case.surface.corrugation
+    wave = case.surface.corrugation_wavelength
     if depth is not None and wave is not None and 2.0 * math.pi * depth > STEEPEST * wave:
         received = f"{written(depth, 'm', 'um')} in waves of {written(wave, 'm', 'mm')}"
         allowed = (

@@ -48,8 +48,10 @@ REMEDIES = "accuracy", "A smaller time step, or a larger static load: windows ho
 """For contacts solved in every step on raceways."""
 SAMPLES = 8
 """Places of a rough raceway whose mean is its force curve."""
-FILTER_STRIPS, FILTER_LENGTH = 4, 60.0
-"""Pieces of a rough raceway on which contact filters are found, and their length in half axes along."""
+FILTER_STRIPS = 4
+"""Pieces of a rough raceway on which contact filters are found."""
+FILTER_LENGTH = 60.0
+"""Their length in half axes along."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,7 +174,8 @@ class OnRaceway:
 
     def _over(self, at: int) -> tuple[Array, Edges | None]:
         """Gap (nx, ny), m, of the smooth ball over the faults at a position, and their edges."""
-        body, edges = self.shape.body, self.surface.edges
+        body = self.shape.body
+        edges = self.surface.edges
         rows = (np.arange(len(body)) - len(body) // 2 + self.stride * at) % self.rows
         under = None if edges is None else edges.rearranged(lambda field: field[rows])
         return body - self.surface.faults[rows], under

@@ -11,7 +11,7 @@ import numpy as np
 from asperity.arguments import Array, require
 from asperity.case import body, form
 from asperity.case.across import complete
-from asperity.case.surface import MeasuredLine, Surface, read_recipe
+from asperity.case.surface import MAP_KEYS, MeasuredLine, Surface, read_recipe
 from asperity.case.tables import TableSource, read_levels
 from asperity.errors import InputError, MissingPointsWarning, ShortRecordWarning, percent
 from asperity.reference import cnossos
@@ -133,7 +133,6 @@ def spectrum_levels(spectrum: str | TableSource) -> tuple[Array, Array, str]:
 
 # --- measured maps
 
-_MAP_KEYS = {name: name for name in ("array", "height_unit", "pixel", "index", "fill", "spikes")}
 _LINE_KEYS = {"array": "line_array", "height_unit": "line_unit", "pixel": "line_spacing"}
 
 
@@ -150,8 +149,8 @@ def read_maps(surface: Surface) -> Sequence[HeightMap | Profile]:
         return [each.filled() if surface.fill else each for each in maps]
     if surface.recipe is not None:
         return read_recipe(surface.recipe).surfaces(surface.file)
-    with spelled(in_case("surface", _MAP_KEYS)):
-        return read_all(surface.file, **{name: getattr(surface, name) for name in _MAP_KEYS})
+    with spelled(in_case("surface", MAP_KEYS)):
+        return read_all(surface.file, **{name: getattr(surface, name) for name in MAP_KEYS})
 
 
 def measured_maps(surface: Surface, spacing: float) -> tuple[tuple[HeightMap, ...], float]:
@@ -180,7 +179,7 @@ def measured_maps(surface: Surface, spacing: float) -> tuple[tuple[HeightMap, ..
         if min(measured.size) < 2.0 * spacing:
             received = "a map of " + " × ".join(map(told_length, measured.size))
             allowed = f"two points or more at contact.spacing = {rounded(spacing * 1e6)} um along each side"
-            with spelled(in_case("surface", _MAP_KEYS)):
+            with spelled(in_case("surface", MAP_KEYS)):
                 remedy = larger_reading(measured) or "Measure a larger one, or refine contact.spacing."
             raise InputError("surface.file", received, allowed, remedy)
         if max(measured.spacing) > spacing * (1 + 1e-9):
@@ -226,7 +225,8 @@ def single_line(surface: Surface, grid: Grid, lead: int, least: int, *, may_shor
     if surface.processing:
         (measured,), _ = processed(surface, "surface", degree=1)
     complete(measured, "surface.line")
-    spacing, rows = grid.spacing, grid.rows
+    spacing = grid.spacing
+    rows = grid.rows
     line = level(resample(level(measured), spacing)).heights
     continued = surface.continuation in ("mirror", "repeat") and line.size < rows
     if may_shorten and not continued:
@@ -341,7 +341,8 @@ def processed(section: MeasuredLine, name: str, *, degree: int) -> tuple[list[Pr
 def _across(lines: Array, section: MeasuredLine, grid: Grid) -> Array:
     if len(lines) > 1 and section.line_distance is None:
         key = f"{'wheel' if isinstance(section, body.Rolling) else 'surface'}.line_distance"
-        allowed, remedy = "the distance across between neighbouring lines", 'Add line_distance = "5 mm", say.'
+        allowed = "the distance across between neighbouring lines"
+        remedy = 'Add line_distance = "5 mm", say.'
         raise InputError(key, f"no distance for {count_of(len(lines), 'line')}", allowed, remedy)
     distance = section.line_distance or grid.spacing
     return measured_lines.strip_from_lines(lines, distance, grid.lines, grid.spacing)

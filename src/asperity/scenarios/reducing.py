@@ -115,7 +115,8 @@ def reduce(prepared: PreparedCase, planes: Array | None, progress: Progress) -> 
     case = prepared.case
     shape = prepared.shape
     textures = prepared.textures
-    contact, numerics = case.contact, case.numerics
+    contact = case.contact
+    numerics = case.numerics
     half_space = shape.half_space(contact.hardness)
     samples = samples_of(case, shape, textures.maps, shape.class_axes)
     pressed = PressedSamples(
@@ -302,7 +303,8 @@ def line_filters(
     case = prepared.case
     shape = prepared.shape
     textures = prepared.textures
-    contact, force = case.contact, ensemble.mean_force
+    contact = case.contact
+    force = ensemble.mean_force
     needing = [spec for spec in map(spec_of, case.laws) if Need.FILTER in spec.needs]
     least, largest = filtered_loads(contact, shape)
     loaded = (force >= least) & (force <= largest)

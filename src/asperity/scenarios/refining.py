@@ -163,7 +163,8 @@ def settings_for(prepared: PreparedCase, approaches: Array) -> list[Setting]:
 
     The grid gets nodes between its own: window, strips and time step stay.
     """
-    case, textures = prepared.case, prepared.textures
+    case = prepared.case
+    textures = prepared.textures
     spacing = case.contact.spacing
     window = case.contact.window
     count = case.contact.samples

@@ -91,7 +91,8 @@ def _passes(surfaces: Sequence[RunInHeights], conditions: Array) -> Values:
 
 def running_in_solutions(prepared: PreparedCase) -> int:
     """Contacts to solve in all passes over samples and path, as far as their number is known."""
-    shape, textures = prepared.shape, prepared.textures
+    shape = prepared.shape
+    textures = prepared.textures
     rolled = [*textures.strips, *([] if textures.path is None else [textures.path])]
     spare = [max(strip.shape[0] - shape.body.shape[0], 0) for strip in rolled]
     passes = passes_of(prepared.case.contact.running_in) or EXPECTED_PASSES
@@ -111,7 +112,8 @@ def _condition(prepared: PreparedCase, textures: Textures) -> tuple[float, float
 
     The track is as wide as the nominal patch; the stiffness is that which small vibration feels: elastic.
     """
-    case, shape = prepared.case, prepared.shape
+    case = prepared.case
+    shape = prepared.shape
     half_space = shape.half_space(case.contact.hardness)
     elastic = shape.half_space(None)
     samples = samples_of(case, shape, textures.maps, shape.semi_axes)

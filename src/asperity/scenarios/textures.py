@@ -281,7 +281,8 @@ def warn_of_textures(case: Case, shape: Geometry, textures: Textures) -> None:
 
 def _samples(case: Case, seeds: list[int]) -> tuple[tuple[HeightMap, ...], tuple[HeightMap, ...], float, str]:
     """Samples and strips that the surface section names; none where they are to be cut from the path."""
-    surface, contact = case.surface, case.contact
+    surface = case.surface
+    contact = case.contact
     if surface.file is not None:
         maps, missing = records.measured_maps(surface, contact.spacing)
         strips, origin = strips_of(maps, contact, seeds)
@@ -346,7 +347,8 @@ def _cut(case: Case, strip: Strip, before: int) -> tuple[HeightMap, ...]:
 
 def _turn(case: Case, contact: int, grid: Grid, seed: int) -> Record:
     """One turn of what rolls on a contact, closed on itself, (rows, lines or 1); `seed` is the first's."""
-    rolling, surface = case.rolling, case.surface
+    rolling = case.rolling
+    surface = case.surface
     turn = replace(grid, rows=round(rolling.circumference / grid.spacing))
     if rolling.line is not None:
         if rolling.line_distance is not None or (surface.IN_STRIPS and len(rolling.offsets) == 1):
@@ -410,7 +412,8 @@ def strips_of(
 
     Cut from the maps where these are long enough, else synthesised in their likeness.
     """
-    rows, ny = strip_rows(contact), window_cells(contact)
+    rows = strip_rows(contact)
+    ny = window_cells(contact)
     longest, narrowest = (min(sizes) for sizes in zip(*(m.shape for m in maps), strict=True))
     if contact.sample_length is None and longest >= FEWEST_WINDOWS * ny:
         rows = min(rows, longest)

@@ -107,7 +107,8 @@ PRINTED_FILTERS = _magnitudes(
 PRINTED_FILTER, PRINTED_FILTER_RAW, PRINTED_FILTER_APPLIED, PRINTED_FILTER_STD = PRINTED_FILTERS
 
 _passed = partial(_entry, condition=RUN_IN)
-_PASS, _CONDITION = "(running_in_pass)", "(condition)"
+_PASS = "(running_in_pass)"
+_CONDITION = "(condition)"
 RUNNING_IN_PASS = _passed("running_in_pass", "1", "pass of running-in")
 RUNNING_IN_LOWERING = _passed(f"running_in_lowering{_PASS}", "m", "largest lowering of a place in the pass")
 CONDITION = _passed("condition", "1", "before or after running-in")

@@ -67,7 +67,8 @@ def _form(model: type[any_case.AnyCase]) -> dict[str, Any]:
 
 def _field(entry: any_case.CaseKey, written: str | None) -> dict[str, Any]:
     """A key as the form shows it: its words, its control, and what stands there at first."""
-    usual, companion = entry.key.default, entry.key.goes_with
+    usual = entry.key.default
+    companion = entry.key.goes_with
     with_section = f"{entry.section}.{{}}".lstrip(".")
     return {
         "key": entry.dotted,

@@ -70,7 +70,8 @@ class PressedSample:
         shape = pressed.shape.within_window()
         self.heights, gap, self.thinning = _thinned(pressed)
         self.spacing = tuple(self.thinning * d for d in shape.spacing)
-        self.load, self.hertz = shape.load, shape.hertz
+        self.load = shape.load
+        self.hertz = shape.hertz
         self.passing = pressed.speed / (2.0 * shape.semi_axes[0])  # Hz, of waves as long as the contact
         self.passing_at = pressed.at
         self.half_space = HalfSpace(

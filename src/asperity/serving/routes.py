@@ -38,7 +38,8 @@ class Server:
     """What lies behind the addresses: surfaces and runs on disk, runs under way, and those who answer."""
 
     def __init__(self, folder: Path) -> None:
-        self.surfaces, self.runs = folder / "surfaces", folder / "runs"
+        self.surfaces = folder / "surfaces"
+        self.runs = folder / "runs"
         self.jobs = Jobs()
         self.contacts = Questions(CONTACT_SECONDS)
         self.files = Questions(FILE_SECONDS)

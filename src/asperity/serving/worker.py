@@ -24,6 +24,7 @@ import numpy as np
 from asperity import errors
 from asperity.case import cases, toml
 from asperity.case.any_case import AnyCase
+from asperity.case.surface import MAP_KEYS
 from asperity.files import alone_in
 from asperity.parameters import Origin
 from asperity.progress import Progress
@@ -46,7 +47,6 @@ NICENESS = 5
 INTERVAL = 0.1
 """Time between two reports of progress, s."""
 MOST_CHANGED = 4  # keys that the list of runs names
-_HINTS = {name: name for name in ("array", "height_unit", "pixel", "index", "fill", "spikes")}
 _pressed: "OrderedDict[str, PressedSample]" = OrderedDict()
 
 
@@ -105,7 +105,7 @@ def examined(path: str) -> Told:
     """Say what is in an uploaded file, or what a case has to say of it; an `InputError` if none reads it."""
     try:
         # said below
-        with hints.spelled(hints.in_case("surface", _HINTS)), errors.MissingPointsWarning.ignored():
+        with hints.spelled(hints.in_case("surface", MAP_KEYS)), errors.MissingPointsWarning.ignored():
             first = read_surface(path, index=0)
     except errors.InputError as error:
         if "in [surface]" not in error.remedy:
@@ -190,7 +190,8 @@ def roll_run() -> None:
         nonlocal message, last
         now = time.monotonic()
         if what != message or now - last >= INTERVAL or done >= total:
-            message, last = what, now
+            message = what
+            last = now
             _tell(told, {"done": done, "total": total, "message": what})
 
     try:

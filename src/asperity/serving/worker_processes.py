@@ -163,7 +163,8 @@ class Job:
             self.message = message
             self.first = done
             self.since = time.monotonic()
-        self.done, self.total = done, total
+        self.done = done
+        self.total = total
 
 
 class Jobs:

@@ -74,8 +74,10 @@ def as_in_toml(value: Any, found: Any, entry: CaseKey) -> Any:
 # --- named changes of several keys
 
 
-VARIANT, AS_IT_IS = "variant", "as it is"
-"""Dimension of the named changes, and the name of the first of them, which changes nothing."""
+VARIANT = "variant"
+"""Dimension of the named changes."""
+AS_IT_IS = "as it is"
+"""Name of the first of them, which changes nothing."""
 WAYS = {"times": (None, 0.0), "plus": (1.0, 1.0), "minus": (1.0, -1.0)}
 """Words before a number: factor of what the case has (None: the number), and sign of what is added to it."""
 MOST_ERRORS = 20

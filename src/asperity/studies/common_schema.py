@@ -24,7 +24,8 @@ SCHEMA_VERSION = 2
 """Of the tables of bearing-datasets since 0.2."""
 SIGNALS, TABLE, MANIFEST = "signals", "metadata.parquet", "manifest.json"
 FAULTY = {"outer": "outer", "inner": "inner", "ball": "rolling_element"}
-PLACE, SHAFT = "test_bearing", "rig_shaft"
+PLACE = "test_bearing"
+SHAFT = "rig_shaft"
 OWN = {
     "load_axial_n": "axial load, N",
     "fault_shape": "shape of the largest fault; 'none' if healthy",

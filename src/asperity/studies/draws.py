@@ -155,7 +155,8 @@ class Draw:
         if not self.jitter:
             return drawn
         duration: float | None = getattr(case, "duration", None)
-        allowed, remedy = "one with its duration", "Give the case its duration."
+        allowed = "one with its duration"
+        remedy = "Give the case its duration."
         received = "a case without a duration"
         require(duration is not None, f"jitter of {self.name}", received, allowed, remedy)
         return _wandering(drawn, self.jitter, float(duration or 0.0), random)

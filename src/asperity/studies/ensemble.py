@@ -74,7 +74,8 @@ def prediction_band(table: xarray.Dataset, share: float = SHARE) -> xarray.Datas
         reach, n = student(finite, share)
         mean = finite.mean(SEED).where(n >= 2)
         reach = reach * np.sqrt(n + 1.0)
-        units, what = values.attrs["units"], values.attrs["long_name"]
+        units = values.attrs["units"]
+        what = values.attrs["long_name"]
         told = {"missing": "fewer than two members have it"} if (n < 2).any() else {}
         ends = ("", mean, "mean"), ("_low", mean - reach, "low end"), ("_high", mean + reach, "high end")
         for end, of, which in ends:

@@ -97,8 +97,12 @@ def _of_bearing(tree: xarray.DataTree) -> dict[str, Any]:
     return found
 
 
-JUDGED, TOTAL, VELOCITY_LEVEL = "judged", "total", "velocity_level"
-"""Bands in which a bearing is judged with all of them together, and levels of its velocities in these."""
+JUDGED = "judged"
+"""Bands in which a bearing is judged."""
+TOTAL = "total"
+"""All of them together."""
+VELOCITY_LEVEL = "velocity_level"
+"""Levels of its velocities in these."""
 VELOCITY_REFERENCE = 1e-9
 """Of levels of velocities, m/s (ISO 1683)."""
 

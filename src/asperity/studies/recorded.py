@@ -158,7 +158,8 @@ def _kind_of(file: Path) -> str:
     named = file.suffix.lower()
     if named in known:
         return named
-    allowed, remedy = ".npz, .npy, .wav, .mat, .parquet, .uff or text", "Save the signal as one of these."
+    allowed = ".npz, .npy, .wav, .mat, .parquet, .uff or text"
+    remedy = "Save the signal as one of these."
     require(text.holds_text(file), file.name, "bytes that are no text, and no signal", allowed, remedy)
     return ""
 

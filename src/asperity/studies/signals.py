@@ -5,6 +5,7 @@ import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
@@ -231,11 +232,10 @@ def _labels(member: Member, case: BearingUnderLoad) -> dict[str, Any]:
             given = own[name] if name in own else getattr(fault, name, missing)
             found[_titled(f"{section}.{name}")] = given if fault else missing
     for name in dict.fromkeys((*ALWAYS, *member.values, *member.drawn)):
-        section, _, key = name.rpartition(".")
         if name == VARIANT:
             found[name] = member.values[name]
         elif _titled(name) not in found:
-            value = getattr(getattr(case, section) if section else case, key)
+            value = attrgetter(name)(case)
             number = np.nan if value is None else mean_speed(case) if name == "speed" else value
             found[_titled(name)] = number if type(number) in (int, float) else written_out(value)
     turning = case.kinematics

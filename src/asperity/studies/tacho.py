@@ -105,7 +105,8 @@ def at_constant_speed(
     found = {}
     for (name, signal), course in zip(signals.items(), turned, strict=True):
         inside = np.isfinite(course.turns)
-        turns, values = course.turns[inside], signal.values[inside]
+        turns = course.turns[inside]
+        values = signal.values[inside]
         gone = ~np.isfinite(values)
         places = np.arange(values.size)
         whole = np.interp(places, places[~gone], values[~gone]) if gone.any() else values
