@@ -20,7 +20,7 @@ KNOTS = 160
 
 
 @dataclass(frozen=True, eq=False)
-class WithFilm:
+class WithFilm(spec.OnLaw):
     """A law whose bodies are as far apart as the film of oil between them is thick under the force.
 
     Under a force F the approach is that of the dry law less h(F), in the middle of the contact. A force curve
@@ -37,20 +37,9 @@ class WithFilm:
         Of the contact, N, about which it is exact.
     """
 
-    law: spec.Law
     film: Film
     load: float
     _softened: dict[tuple[Any, ...], dict[str, Any]] = field(default_factory=dict, init=False, repr=False)
-
-    @property
-    def name(self) -> str:
-        """Name of the law."""
-        return self.law.name
-
-    @property
-    def damping(self) -> float:
-        """Contact damping, N s/m."""
-        return self.law.damping
 
     def prepare(self, positions: spec.ArrayLike) -> spec.Prepared:
         """Lay the law out on positions (n,) of the contact, m."""

@@ -10,7 +10,7 @@ from asperity.laws import spec
 
 
 @dataclass(frozen=True, eq=False)
-class Periodic:
+class Periodic(spec.OnLaw):
     """A law on a path that is closed: positions count modulo its circumference, m.
 
     Parameters
@@ -27,20 +27,9 @@ class Periodic:
         path, with the surface in the other order.
     """
 
-    law: spec.Law
     circumference: float
     ball: spec.PairedLaw | None = None
     radius: float = 0.0
-
-    @property
-    def name(self) -> str:
-        """Name of the law."""
-        return self.law.name
-
-    @property
-    def damping(self) -> float:
-        """Contact damping, N s/m."""
-        return self.law.damping
 
     def prepare(self, positions: spec.ArrayLike) -> spec.Prepared | spec.SteppedLaw:
         """Lay the law out on positions (n,), m, on as many turns as they are.

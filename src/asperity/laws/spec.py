@@ -403,6 +403,23 @@ class Law(Protocol):
         """Lay the law out on the positions (n,) of the contact, m."""
 
 
+@dataclass(frozen=True, eq=False)
+class OnLaw:
+    """A law laid out on another one, whose name and damping it has."""
+
+    law: Law
+
+    @property
+    def name(self) -> str:
+        """Name of the law."""
+        return self.law.name
+
+    @property
+    def damping(self) -> float:
+        """Contact damping, N s/m."""
+        return self.law.damping
+
+
 @runtime_checkable
 class PairedLaw(Law, Protocol):
     """A law of a path on which something rolls whose surface it takes as well, on the same cells."""

@@ -13,7 +13,7 @@ from asperity.laws import spec
 
 
 @dataclass(frozen=True, eq=False)
-class Tilted:
+class Tilted(spec.OnLaw):
     """A law whose force is that of all slices of a tilted roller, on the texture that the law follows.
 
     F = Σ c (approach − h + tilt · xₖ − P(xₖ))^(10/9) over the slices at xₖ, where their sum is positive; h,
@@ -27,18 +27,7 @@ class Tilted:
         Of the roller and its raceway.
     """
 
-    law: spec.Law
     contact: SlicedContact
-
-    @property
-    def name(self) -> str:
-        """Name of the law."""
-        return self.law.name
-
-    @property
-    def damping(self) -> float:
-        """Contact damping, N s/m."""
-        return self.law.damping
 
     def prepare(self, positions: spec.ArrayLike) -> spec.Prepared:
         """Lay the law out on (n, 2): positions, m, and angles by which the far end comes nearer, rad."""

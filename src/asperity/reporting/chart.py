@@ -114,12 +114,12 @@ def as_seen(values: Numbers) -> tuple[Numbers, tuple[float, float]]:
     return means, (nx / values.shape[0], ny / values.shape[1])
 
 
-def smooth_on_log_axis(frequency: Numbers, psd: Numbers, per_octave: int = 24) -> tuple[Numbers, Numbers]:
-    """Mean power in stretches of 1/`per_octave` octave, where lines are denser than that; for drawing only.
+def smooth_on_log_axis(frequency: Numbers, psd: Numbers) -> tuple[Numbers, Numbers]:
+    """Mean power in stretches of a 24th of an octave, where lines are denser than that; for drawing only.
 
     Positive, increasing frequencies or wavenumbers (n,) and PSD (..., n); returns the same, with fewer lines.
     """
-    index = np.floor(np.log2(frequency / frequency[0]) * per_octave).astype(int)
+    index = np.floor(np.log2(frequency / frequency[0]) * 24).astype(int)
     starts = np.flatnonzero(np.diff(index, prepend=-1))
     count = np.diff(np.append(starts, len(frequency)))
     return np.add.reduceat(frequency, starts) / count, np.add.reduceat(psd, starts, axis=-1) / count

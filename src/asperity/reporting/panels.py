@@ -221,7 +221,6 @@ def band_panel(
     lines: figure.Lines,
     label: str,
     levels: Sequence[Line],
-    product: Entry = spectra.BAND_TIME_PRODUCT,
     *,
     of: Sequence[Line] = (),
     span: float = 60.0,
@@ -229,7 +228,7 @@ def band_panel(
 ) -> Panel:
     """Levels over one-third octaves, and an axis that suits them, or those alone that it is the axis `of`."""
     axis = levels_axis(label, [line.y for line in of or levels], span=span)
-    shades = doubtful_boxes(lines.at, data.doubtful(tree, product))
+    shades = doubtful_boxes(lines.at, data.doubtful(tree, spectra.BAND_TIME_PRODUCT))
     return Panel(band_axis(lines.at), axis, (*shades, *levels), height=height)
 
 
