@@ -1,9 +1,10 @@
 """A small real run of each kind of case, as small as the chain goes."""
 
 import numpy as np
+from xarray import DataTree
 
 from asperity.case.cases import as_case
-from asperity.schema import UNKNOWN
+from asperity.schema import UNKNOWN, group
 
 ON_BEAM = {
     "duration": "20 ms",
@@ -111,3 +112,11 @@ def unmarked(tree):
                 np.isinf(values.values).any() or np.isnan(values.values).any() > reason
             ):
                 yield f"{node.path}/{name}"
+
+
+def tree_of(values):
+    """A result that holds some variables."""
+    names = {entry.group: {} for entry in values}
+    for entry, held in values.items():
+        names[entry.group][entry] = held
+    return DataTree.from_dict({f"/{name}": group(held) for name, held in names.items()})

@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 import pytest
+import test_friction
 from test_friction import HARD, SOFT, body, displaced, ellipse, places, rigid
 
 from asperity import FrictionalHalfSpace, HalfSpace
-from asperity.contact import tangential
 from asperity.contact.wear import rubbing
 from asperity.kernels.traction import pressure_displacement
 
@@ -38,15 +38,11 @@ def in_cells(solver, found, before, slip):
 
 def test_heat_of_a_long_roller_is_carters_at_any_creepage():
     """−F ξ of µ N (1 − (1 − ξ R/µ a)²). Traction times slip in each cell comes to it from below."""
-    a, g, radius, errors = 1e-3, 80e9, 0.25, {}
+    errors = {}
     for n in (33, 65):
-        dx = 2.1 * a / n
-        space, x = HalfSpace((n, 1), (dx, 200.0 * a), g), places(n, dx)[:, None]
-        pressure = space.modulus * a / (2 * radius) * np.sqrt(np.maximum(1 - (x / a) ** 2, 0.0))
-        contact = tangential.replace(space.solve(np.zeros(space.shape), load=1.0), pressure=pressure)
-        solver = FrictionalHalfSpace(space, (body(g, 0.0), body(g, 0.0)), 0.3)
+        contact, solver, _ = test_friction.long_roller(n, 0.0)
         for share in (0.05, 0.64):
-            creepage = 0.3 * a / radius * (1.0 - math.sqrt(1.0 - share))
+            creepage = test_friction.CREEPING * (1.0 - math.sqrt(1.0 - share))
             found = solver.roll(contact, (creepage, 0.0), speed=20.0)
             exact = share * found.limit * creepage * 20.0
             errors[n, share] = found.dissipated_power / exact - 1.0
@@ -165,9 +161,8 @@ def test_unlike_bodies_that_roll_freely_make_heat_without_a_force():
 
 def moved(solver, state, ahead=0.0):
     """Displacement by traction and pressure (2, nx, ny), m, summed over cells."""
-    space, (nx, ny) = solver.half_space, solver.half_space.shape
-    x, y = (d * np.arange(1 - n, n) for n, d in zip(space.shape, space.spacing, strict=True))
-    spread = pressure_displacement(x[:, None] + ahead, y[None], *space.spacing)
+    nx, ny = solver.half_space.shape
+    spread = pressure_displacement(*test_friction.between_cells(solver, ahead))
     kernel = solver.unlikeness / math.pi * np.array([spread.real, spread.imag])
     drawn = sum(
         state.normal.pressure[i, j] * kernel[:, nx - 1 - i : 2 * nx - 1 - i, ny - 1 - j : 2 * ny - 1 - j]

@@ -101,12 +101,16 @@ def test_of_two_in_series_the_one_is_held_with_which_the_data_are_met(track):
     assert found.values == {"track.pad_stiffness": pytest.approx(4e8, rel=1e-3)}
 
 
+def lossy():
+    """Data of a loss factor of 0.06."""
+    at = np.linspace(0.0, 3.0, 12)
+    return Measured(RUBBER, at, 3.0 * np.exp(-0.06 * at), uncertainty=1.5)
+
+
 @pytest.mark.parametrize("keys", [list(TRUE), ["track.pad_loss_factor"]])
 def test_a_value_that_data_contradict_is_not_left_as_the_case_has_it(track, rubber, keys):
     """A loss factor of 0.06 is known to a factor of ten; 0.5, as the case has it, is 2 to 3 dB rms off."""
-    at = np.linspace(0.0, 3.0, 12)
-    data = Measured(RUBBER, at, 3.0 * np.exp(-0.06 * at), uncertainty=1.5)
-    found = asperity.fit(track.with_(**{"track.pad_loss_factor": 0.5}), data, keys, starts=1)
+    found = asperity.fit(track.with_(**{"track.pad_loss_factor": 0.5}), lossy(), keys, starts=1)
     assert not found.undetermined
     assert found.values["track.pad_loss_factor"] == pytest.approx(0.06, rel=0.02)
     low, high = found.intervals["track.pad_loss_factor"]
@@ -115,9 +119,7 @@ def test_a_value_that_data_contradict_is_not_left_as_the_case_has_it(track, rubb
 
 def test_an_open_value_that_data_do_not_contradict_is_left_as_the_case_has_it(track, rubber):
     """0.12 in place of the loss factor of 0.06 is 0.2 dB rms off, of data that are certain to 1.5 dB."""
-    at = np.linspace(0.0, 3.0, 12)
-    data = Measured(RUBBER, at, 3.0 * np.exp(-0.06 * at), uncertainty=1.5)
-    found = asperity.fit(track.with_(**{"track.pad_loss_factor": 0.12}), data, starts=1)
+    found = asperity.fit(track.with_(**{"track.pad_loss_factor": 0.12}), lossy(), starts=1)
     assert [each.free.name for each in found.undetermined] == ["track.pad_loss_factor"]
     assert found.case.track.pad_loss_factor == 0.12
 

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import xarray
 
 import asperity
 from asperity import observables
@@ -20,11 +19,11 @@ from asperity.fitting.running import measured_for
 from asperity.fitting.tried import FitRuns, TriedCase
 from asperity.observables.observable import Measured
 from asperity.scenes import schema
-from asperity.schema import bearing, contact, group, spectra
+from asperity.schema import bearing, contact, spectra
 from asperity.spectra import a_weighting
 from command_line import call
 from refusals import refusals
-from small_cases import BALL, BEARING, HEARD
+from small_cases import BALL, BEARING, HEARD, tree_of
 
 BAND = 10.0 ** (0.1 * np.arange(20, 33))
 HEIGHTS = 20.0 * np.log10(BAND)
@@ -46,11 +45,7 @@ def ran(monkeypatch):
             assert brief
             calls.append(case)
             progress(1, 2, "rolling")
-            laid = values(case)
-            names = {entry.group: {} for entry in laid}
-            for entry, held in laid.items():
-                names[entry.group][entry] = held
-            return xarray.DataTree.from_dict({f"/{name}": group(held) for name, held in names.items()})
+            return tree_of(values(case))
 
         monkeypatch.setattr(fitted_to, "run", run)
         return calls

@@ -4,7 +4,6 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-import xarray
 from numpy.testing import assert_allclose
 
 import asperity
@@ -15,20 +14,12 @@ from asperity.observables.beside_result import with_tables_beside
 from asperity.running import prepare_case
 from asperity.scenes import schema
 from asperity.scenes.figures.measured import beside_measured, beside_table
-from asperity.schema import bearing, contact, declared, group, spectra
+from asperity.schema import bearing, contact, declared, spectra
 from asperity.schema import measured as laid_out
 from refusals import refusals
-from small_cases import BALL, BEARING, HEARD
+from small_cases import BALL, BEARING, HEARD, tree_of
 
 BANDS = 10.0 ** (0.1 * np.arange(24, 28))  # 250 to 500 Hz
-
-
-def tree_of(values):
-    """A result that holds some variables."""
-    names = {entry.group: {} for entry in values}
-    for entry, held in values.items():
-        names[entry.group][entry] = held
-    return xarray.DataTree.from_dict({f"/{name}": group(held) for name, held in names.items()})
 
 
 def of_beam():

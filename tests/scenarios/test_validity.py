@@ -233,23 +233,9 @@ def test_an_energy_that_is_left_over_is_warned_of_and_leads_the_verdict(runs, mo
 )
 def test_a_motion_that_cannot_be_is_no_verdict_without_a_doubt(force, moved, words):
     """A linear contact may pull: a mean of -701 loads, and a beam of 1 m that moves by 2 km."""
-    run = SimpleNamespace(
-        energy=SimpleNamespace(residual=0.0),
-        body=np.zeros(1, dtype=int),
-        over_displacement=np.array([[moved]]),
-        relative_displacement=np.zeros((1, 2)),
-        contact_force=np.full((1, 2), force * 5.0),
-        softening=np.zeros(1),
-        in_contact=np.zeros((1, 2), dtype=bool),
-        flights=[([0.0], [1.0])],
-    )
-    beam = Beam.rectangular(1.0, 0.05, 0.01, STEEL, highest_frequency=500.0)
-    computed = SimpleNamespace(runs={"linear": run}, scene=SimpleNamespace(loads=[5.0]), over=beam)
-    computed.stiffness, computed.case = 1e6, small_cases.changed("ball-on-beam")
-    found = list(_of_motion(computed))
-    told = "; ".join(_doubts(computed, found))
-    assert all(each in told for each in words), told
-    assert bool(told) is bool(words)
+    run = motion(moved, 0.0, force * 5.0)
+    run.in_contact, run.flights = np.zeros((1, 2), dtype=bool), [([0.0], [1.0])]
+    check_doubts(run, Beam.rectangular(1.0, 0.05, 0.01, STEEL, highest_frequency=500.0), words)
     assert _contact(run, "ball") == "The ball loses contact 1 time, 100 % of the time"
 
 
@@ -267,19 +253,28 @@ def test_what_is_moved_too_far_is_doubted_over_rails_and_structures_and_on_a_pla
         (None, 0.0, 2e-3, ["Doubtful", "an approach of 8 % of the radius"]),
         (rail, 0.01 * bow, 1e-4, []),
     ):
-        run = SimpleNamespace(
-            energy=SimpleNamespace(residual=0.0),
-            body=np.zeros(1, dtype=int),
-            over_displacement=np.array([[moved]]),
-            relative_displacement=np.array([[0.0, apart]]),
-            contact_force=np.full((1, 2), 5.0),
-            softening=np.zeros(1),
-        )
-        computed = SimpleNamespace(runs={"linear": run}, scene=SimpleNamespace(loads=[5.0]), over=over)
-        computed.stiffness, computed.case = 1e6, small_cases.changed("ball-on-beam")
-        told = "; ".join(_doubts(computed, list(_of_motion(computed))))
-        assert all(each in told for each in words), told
-        assert bool(told) is bool(words)
+        check_doubts(motion(moved, apart, 5.0), over, words)
+
+
+def motion(moved, apart, force):
+    """A run in which what is rolled over moves so far, m, and surfaces apart, m, under a force, N."""
+    return SimpleNamespace(
+        energy=SimpleNamespace(residual=0.0),
+        body=np.zeros(1, dtype=int),
+        over_displacement=np.array([[moved]]),
+        relative_displacement=np.array([[0.0, apart]]),
+        contact_force=np.full((1, 2), force),
+        softening=np.zeros(1),
+    )
+
+
+def check_doubts(run, over, words):
+    """What is doubted of a ball's run over something, of 5 N, and nothing where there are no words."""
+    computed = SimpleNamespace(runs={"linear": run}, scene=SimpleNamespace(loads=[5.0]), over=over)
+    computed.stiffness, computed.case = 1e6, small_cases.changed("ball-on-beam")
+    told = "; ".join(_doubts(computed, list(_of_motion(computed))))
+    assert all(each in told for each in words), told
+    assert bool(told) is bool(words)
 
 
 @pytest.mark.filterwarnings("ignore::asperity.errors.PhysicsWarning")

@@ -103,6 +103,14 @@ def test_over_a_groove_across_its_whole_length_a_roller_sinks_onto_the_edges():
 # --- in time
 
 
+def roll_slowly(bearing, laws):
+    """A few steps at 1 kN."""
+    rings = BearingRings(Ring.rigid(0.5), Ring.rigid(0.3, radial_stiffness=1e8, damping_ratio=0.02))
+    return roll_bearing(
+        bearing, rings, *laws, speed=0.1, radial=1000.0, duration=2e-5, time_step=1e-6, centrifugal=False
+    )
+
+
 def test_it_starts_as_the_static_solution_and_carries_the_load():
     """Independent of it: Newton's method on slices of both contacts (`RollerBearing.loaded`)."""
     bearing = RollerBearing.named("NU205", rollers=7)
@@ -111,11 +119,7 @@ def test_it_starts_as_the_static_solution_and_carries_the_load():
         at = contact.approach(8.0 * LOAD) * np.geomspace(1e-3, 1.0, 60)
         found = contact.pressed(at)
         curve.append(ForceCurve.from_samples(at, found.force, 10 / 9, found.stiffness[:, 0, 0]))
-    laws = [Areal(each, None, 20.0) for each in curve]
-    rings = BearingRings(Ring.rigid(0.5), Ring.rigid(0.3, radial_stiffness=1e8, damping_ratio=0.02))
-    run = roll_bearing(
-        bearing, rings, *laws, speed=0.1, radial=1000.0, duration=2e-5, time_step=1e-6, centrifugal=False
-    )
+    run = roll_slowly(bearing, [Areal(each, None, 20.0) for each in curve])
     still = bearing.loaded(1000.0, cage_angles=run.cage[:1])
     np.testing.assert_allclose(run.inner_force[:, 0], still.inner_load[0], rtol=2e-3, atol=1e-3)
     moved = run.inner_motion[:2, 0] - run.outer_motion[:2, 0]
@@ -132,10 +136,7 @@ def test_slow_rings_with_films_stand_as_in_a_static_solution_with_them():
         found = film.contact.pressed(at)
         curve = ForceCurve.from_samples(at, found.force, 10 / 9, found.stiffness[:, 0, 0])
         laws.append(WithFilm(Areal(curve, None, 20.0), film, load))
-    rings = BearingRings(Ring.rigid(0.5), Ring.rigid(0.3, radial_stiffness=1e8, damping_ratio=0.02))
-    run = roll_bearing(
-        bearing, rings, *laws, speed=0.1, radial=1000.0, duration=2e-5, time_step=1e-6, centrifugal=False
-    )
+    run = roll_slowly(bearing, laws)
     forces = np.geomspace(0.01, 2000.0, 4000)
     nearer = np.zeros(len(forces))
     for film, load in zip(case.films, loads, strict=True):
