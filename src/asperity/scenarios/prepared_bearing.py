@@ -159,19 +159,12 @@ def planned_bearing(prepared: PreparedBearing, progress: Progress) -> preparing.
 def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], preparing.Work]:
     """What will be computed, in words, and how much work it is; coarsely, as nothing is solved for that."""
     case = prepared.case
-    turning = prepared.case.kinematics
-    found = prepared.case.static
+    turning = case.kinematics
+    found = case.static
     steps = case.steps_taken
     textured = sum(bool(getattr(case, case.called(key)).given()) for key in ON)
     runs = len(case.laws) + textured + (textured > 0)
-    solutions = {}
-    for name, on in zip(RINGS, raceways_of(prepared, progress=None), strict=True):
-        rough = np.count_nonzero((on.surface.heights + on.surface.faults).any(axis=1))
-        if rough and any(Need.SCAN in spec_of(law).needs for law in case.laws):
-            positions = math.ceil(int(rough) / on.scanned_stride)
-            solutions[f"scan of the {NAMES[name]}"] = positions * reducing.STATES
-    for law in (law for law in case.laws if spec_of(law).solved_every_step):
-        solutions[law] = steps * int(found.touching.max() + found.bearing.balls)
+    solutions = _contact_solutions(prepared)
     rolled_once = STEP_TIME[found.bearing.ELEMENT] * steps * found.bearing.balls
     rolled_once *= TILTED if case.tilts else 1.0
     parts = {
@@ -218,6 +211,20 @@ def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], preparin
             1, ("load that turns", f"{in_newtons(case.rotating)}, once in {1e3 / case.speed:.4g} ms{fastest}")
         )
     return rows, preparing.Work({}, solutions, steps, None, taken, pace * compiling.time_to_compile("whole"))
+
+
+def _contact_solutions(prepared: PreparedBearing) -> dict[str, int]:
+    """How many contacts are solved, by the scan or the law that does it."""
+    case = prepared.case
+    solutions = {}
+    for name, on in zip(RINGS, raceways_of(prepared, progress=None), strict=True):
+        rough = np.count_nonzero((on.surface.heights + on.surface.faults).any(axis=1))
+        if rough and any(Need.SCAN in spec_of(law).needs for law in case.laws):
+            positions = math.ceil(int(rough) / on.scanned_stride)
+            solutions[f"scan of the {NAMES[name]}"] = positions * reducing.STATES
+    for law in (law for law in case.laws if spec_of(law).solved_every_step):
+        solutions[law] = case.steps_taken * int(case.static.touching.max() + case.static.bearing.balls)
+    return solutions
 
 
 def _tilt_in_words(case: BearingUnderLoad) -> str:
