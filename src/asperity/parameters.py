@@ -255,9 +255,7 @@ class Text(ValueKind):
 
     def __call__(self, value: object, origin: Origin = FROM_PYTHON) -> str:
         """Return the text."""
-        if not isinstance(value, str) or not value.strip() or "\0" in value:
-            self.refuse(value)
-        if any("\ud800" <= character <= "\udfff" for character in value):
+        if not isinstance(value, str) or not value.strip() or re.search("[\0\ud800-\udfff]", value):
             self.refuse(value)
         return value
 

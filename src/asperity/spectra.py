@@ -28,6 +28,11 @@ MOST_START = 0.2
 """Share of the mean square of a band that may not be built up yet in a record: its level is then 1 dB low."""
 
 
+def root_mean_square(values: Array) -> float:
+    """Of all values."""
+    return float(np.sqrt(np.mean(values**2)))
+
+
 def psd(signal: ArrayLike, spacing: float, *, segment: int | None = None) -> tuple[Array, Array]:
     """One-sided power spectral density (..., f) by Welch's method with a Hann window, after its frequencies.
 

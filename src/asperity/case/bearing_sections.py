@@ -44,7 +44,6 @@ LOAD = Quantity("N", at_least=0)
 LOADS = "0 N to 100 MN: bearings carry less"
 DAMPED = "1e-9 N s/m to 1e9 N s/m: less damps nothing, more is rigid"
 DIMENSIONS = keys_of(BallBearing, otherwise="that of the named bearing")
-NEEDED = ("balls", "ball_diameter", "pitch_diameter")
 
 
 def _refused(made: Callable[[], object]) -> Iterator[InputError]:
@@ -78,7 +77,7 @@ class BearingGeometry(NamedBearing, parameters=DIMENSIONS):
 
     MODEL = BallBearing
     DIMENSIONS = DIMENSIONS
-    NEEDED = NEEDED
+    NEEDED = ("balls", "ball_diameter", "pitch_diameter")
     ALTERNATIVES = (("clearance", "contact_angle"),)
 
     name: str | None = optional(_BearingName(), "6205", "named bearing", "the dimensions are given")

@@ -32,7 +32,6 @@ TILT = key(
     "-0.1 rad to 0.1 rad: shafts tilt less",
 )
 DIMENSIONS = keys_of(RollerBearing, otherwise="that of the named bearing")
-NEEDED = ("rollers", "roller_diameter", "roller_length", "pitch_diameter")
 BY_SLICES = "areal"
 """The law of rollers: its force is that of all slices, on heights averaged under them."""
 
@@ -54,7 +53,7 @@ class RollerGeometry(NamedBearing, parameters=DIMENSIONS):
 
     MODEL = RollerBearing
     DIMENSIONS = DIMENSIONS
-    NEEDED = NEEDED
+    NEEDED = ("rollers", "roller_diameter", "roller_length", "pitch_diameter")
 
     name: str | None = optional(
         Choice(tuple(ROLLER_BEARINGS)), "NU205", "named bearing", "the dimensions are given"

@@ -11,6 +11,7 @@ from asperity.fitting.interval_ends import LIMIT
 from asperity.observables import observable
 from asperity.observables.observable import Measured, Values
 from asperity.observables.reading import told_repeats
+from asperity.spectra import root_mean_square
 from asperity.written_numbers import count_of, in_a_row, rounded
 
 
@@ -167,7 +168,7 @@ class Fitted:
 
     def rms(self, *, before: bool = False) -> float:
         """Root mean square of these of all data, dB."""
-        return float(np.sqrt(np.mean(np.concatenate(self.residuals(before=before)) ** 2)))
+        return root_mean_square(np.concatenate(self.residuals(before=before)))
 
     @property
     def sentence(self) -> str:

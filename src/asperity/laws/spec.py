@@ -193,18 +193,19 @@ class LawSpec:
     @property
     def family(self) -> tuple[LawSpec, ...]:
         """The law and its variants, each by itself."""
-        return replace(self, variants=()), *map(self._varied, self.variants)
-
-    def _varied(self, variant: Variant) -> LawSpec:
-        return replace(
-            self,
-            name=f"{self.name}-{variant.suffix}",
-            meaning=f"{self.meaning} {variant.meaning}",
-            needs=variant.needs,
-            role=variant.role,
-            look=variant.look or replace(self.look, dashes=VARIANT_DASHES),
-            variants=(),
+        alone = replace(self, variants=())
+        varied = (
+            replace(
+                alone,
+                name=f"{self.name}-{each.suffix}",
+                meaning=f"{self.meaning} {each.meaning}",
+                needs=each.needs,
+                role=each.role,
+                look=each.look or replace(self.look, dashes=VARIANT_DASHES),
+            )
+            for each in self.variants
         )
+        return alone, *varied
 
     @property
     def sees_heights(self) -> bool:

@@ -16,7 +16,7 @@ from asperity.errors import InputError
 from asperity.files import together, write_bytes
 from asperity.reporting import data
 from asperity.schema.rolling import CONTACT, CONTACT_FORCE, LAW, SPEED, TIME
-from asperity.spectra import HALF_BAND, a_weighting, band_energies, energy_sum
+from asperity.spectra import HALF_BAND, a_weighting, band_energies, energy_sum, root_mean_square
 from asperity.text_files import write_csv
 from asperity.wave_files import wave_bytes
 from asperity.written_numbers import rounded
@@ -128,7 +128,7 @@ class Sound:
         """Root mean square after A-weighting, in its unit."""
         n = len(self.samples)
         gain = 10 ** (a_weighting(rfftfreq(n, 1.0 / RATE)) / 20.0)
-        return float(np.sqrt(np.mean(irfft(gain * rfft(self.samples), n) ** 2)))
+        return root_mean_square(irfft(gain * rfft(self.samples), n))
 
 
 def listen(result: DataTree, path: FilePath, *, what: str | None = None, matched: bool = False) -> list[Path]:

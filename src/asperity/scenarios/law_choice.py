@@ -15,7 +15,7 @@ from asperity.reduction.texture import areal_texture
 from asperity.reference.law_accuracy import HIGH, LOW, LawMap, MappedPoint, Place, law_map
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.scene import PreparedCase
-from asperity.spectra import psd
+from asperity.spectra import psd, root_mean_square
 from asperity.speeds import at_fastest
 from asperity.structures.track import Track
 from asperity.surfaces.spectra import CORRELATION_THRESHOLD
@@ -54,10 +54,10 @@ def place_of(path: Strip, shape: Geometry, speed: float, square_transfer: Square
     transfer = square_transfer(shape.hertz.tangent_stiffness(approach), (wavenumber * speed)[among])
     force = float(np.sqrt(density[among] @ transfer * (wavenumber[1] - wavenumber[0])))
     return Place(
-        roughness=float(np.sqrt(np.mean(heights**2))) / approach,
+        roughness=root_mean_square(heights) / approach,
         correlation=along / (2.0 * a),
         across=across / (2.0 * b),
-        within=float(np.sqrt(np.mean((heights[:, heights.shape[1] // 2] - felt) ** 2))) / approach,
+        within=root_mean_square(heights[:, heights.shape[1] // 2] - felt) / approach,
         dynamic=force / shape.load,
         highest_wavenumber=2.0 * math.pi * HIGH / speed * a,
     )

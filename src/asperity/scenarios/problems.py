@@ -13,7 +13,7 @@ from asperity.reduction.filter import FEWEST_POSITIONS
 from asperity.scenarios import reducing
 from asperity.scenarios.scene import PreparedCase
 from asperity.scenarios.textures import recorded_time
-from asperity.spectra import HALF_BAND, lowest_band, nominal_frequency
+from asperity.spectra import HALF_BAND, lowest_band, nominal_frequency, root_mean_square
 from asperity.structures.moving_kernel import refuse_kernel
 from asperity.structures.track import Track
 from asperity.units import written
@@ -99,7 +99,7 @@ def _problem_of_heights(prepared: PreparedCase) -> InputError | None:
             f"slopes up to {STEEPEST:g}, {written(STEEPEST * wave / (2.0 * math.pi), 'm', 'um')} in these"
         )
         return InputError("surface.corrugation", received, allowed, "Are both units right?")
-    slope = float(np.sqrt(np.mean(np.diff(textures.line) ** 2))) / case.contact.spacing
+    slope = root_mean_square(np.diff(textures.line)) / case.contact.spacing
     rough = 0.0
     if maps:
         slope = textures.rms_slope

@@ -11,6 +11,7 @@ from asperity.arguments import Array
 from asperity.case.ball_bearing import BearingUnderLoad
 from asperity.contact.film import Film, asperity_share, combined_rms, regime
 from asperity.errors import percent
+from asperity.spectra import root_mean_square
 from asperity.surfaces.raceway import Raceway
 from asperity.written_numbers import rounded
 
@@ -128,4 +129,4 @@ def pieces_within(surface: Raceway, axes: tuple[float, float]) -> Array:
 
 def rms_within(surface: Raceway, axes: tuple[float, float]) -> float:
     """Rms height of a surface within contacts of half axes, m, each from its mean there; m."""
-    return float(np.sqrt(np.mean(pieces_within(surface, axes) ** 2)))
+    return root_mean_square(pieces_within(surface, axes))

@@ -6,6 +6,7 @@ from asperity.arguments import require
 from asperity.errors import OutOfRangeWarning
 from asperity.scenarios.geometry import HIGHEST_FORCE
 from asperity.scenarios.problems import ROUGHEST, STEEPEST
+from asperity.spectra import root_mean_square
 from asperity.surfaces.faults import Fault
 from asperity.surfaces.raceway import Raceway
 from asperity.written_numbers import rounded
@@ -35,7 +36,7 @@ def doubt_surface(surface: Raceway, approach: float, rolls: str) -> None:
         )
         require(highest <= ROUGHEST * approach, "waves all around", received, f"at most {ROUGHEST:g}", REMEDY)
     slope = np.diff(waves, axis=0, append=waves[:1]) / surface.spacing[0]
-    steep = float(np.sqrt(np.mean(slope**2)))
+    steep = root_mean_square(slope)
     require(steep <= STEEPEST, "rms slope", rounded(steep), f"at most {STEEPEST:g}", REMEDY)
     highest = 0.5 * float(np.ptp(waves))
     held = HIGHEST_FORCE ** (2.0 / 3.0) * approach

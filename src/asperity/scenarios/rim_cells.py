@@ -10,6 +10,7 @@ from asperity.contact.batched import find_device
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.reducing import samples_of
 from asperity.scenarios.scene import PreparedCase
+from asperity.spectra import root_mean_square
 from asperity.written_numbers import rounded
 
 SMOOTH = 0.1
@@ -74,4 +75,4 @@ def roughness_within(samples: Sequence[Array], shape: Geometry) -> float:
     plane = np.stack([np.ones(inside.sum()), x[inside], y[inside]], axis=1)
     heights = np.stack([sample[inside] for sample in samples], axis=1)
     left = heights - plane @ np.linalg.lstsq(plane, heights, rcond=None)[0]
-    return float(np.sqrt(np.mean(left**2))) / shape.hertz.approach(shape.load)
+    return root_mean_square(left) / shape.hertz.approach(shape.load)

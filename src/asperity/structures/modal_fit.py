@@ -11,6 +11,7 @@ import scipy
 from asperity import errors
 from asperity.arguments import Array, ArrayLike, Complex, NDArray, require
 from asperity.errors import ComputationError, InputError
+from asperity.spectra import root_mean_square
 from asperity.structures.modal import modal_answers
 from asperity.threads import one_thread_in_linear_algebra
 from asperity.written_numbers import count_of, rounded
@@ -215,7 +216,7 @@ def check_record(frequency: Array, receptance: Complex) -> None:
 def level_error(fitted: Complex, given: Complex) -> float:
     """Root mean square of the level differences of receptances, dB."""
     with np.errstate(divide="ignore"):
-        return float(np.sqrt(np.mean((20.0 * np.log10(np.abs(fitted / given))) ** 2)))
+        return root_mean_square(20.0 * np.log10(np.abs(fitted / given)))
 
 
 def judge_fit(what: str, error: float, modes: str) -> None:

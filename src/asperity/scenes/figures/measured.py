@@ -15,7 +15,7 @@ from asperity.scenes import schema
 from asperity.scenes.figures.sources import WHOLE, Sources, decides, main_sources
 from asperity.schema import Entry, spectra
 from asperity.schema import measured as beside
-from asperity.spectra import a_weighting, nominal_frequency
+from asperity.spectra import a_weighting, nominal_frequency, root_mean_square
 from asperity.units import unit_in_brackets
 from asperity.written_numbers import capital, count_of, rounded
 
@@ -125,7 +125,7 @@ def _how_far(apart: chart.Numbers, deviation: chart.Numbers, of: str) -> tuple[s
     """Say how far measured values (n,), dB, are from computed ones, and how many are too far."""
     known = np.isfinite(apart)
     outside = int(np.sum(np.abs(apart[known]) > TWICE * deviation[known]))
-    rms = float(np.sqrt(np.mean(apart[known] ** 2)))
+    rms = root_mean_square(apart[known])
     values = count_of(int(known.sum()), of)
     beyond = f"{outside} of them beyond 95 % of what measuring and chance explain"
     return f"{_decibels(rms)} dB rms in {values}, {beyond}", outside
