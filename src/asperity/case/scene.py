@@ -487,8 +487,8 @@ class Case(AnyCase):
         foremost = ", where the foremost contact is at its end" if len(self.contacts_behind) > 1 else ""
         if end <= begin:
             received = f"contacts over {self.contacts_behind[-1]:g} m"
-            length = end - begin
-            allowed = f"less than the length of the {over}, {length + max(self.rolling.offsets):g} m"
+            length = end - begin + max(self.rolling.offsets)
+            allowed = f"less than the length of the {over}, {length:g} m"
             yield InputError(f"{self.ROLLING}.positions", received, allowed)
         elif start >= end:
             what = "start" if self.start is not None else "start, after settling"
@@ -540,15 +540,13 @@ class Case(AnyCase):
             title, _, name = dotted.partition(".")
             for given in sorted(getattr(self, title).given() if title in self.inner else ()):
                 if name in ("", given):
-                    what = f"{title}.{given}"
                     allowed = f"what a {self.over_name} has"
-                    yield InputError(what, "a key of a track", allowed, "Remove it.")
+                    yield InputError(f"{title}.{given}", "a key of a track", allowed, "Remove it.")
 
     def _problems_of_levels(self) -> Iterator[InputError]:
         """Keys of levels beside the track, which are those of one speed."""
-        for name in (
-            sorted(self.noise.given().keys() - RADIATES) if isinstance(self.speed, SpeedCourse) else ()
-        ):
+        of_levels = self.noise.given().keys() - RADIATES
+        for name in sorted(of_levels) if isinstance(self.speed, SpeedCourse) else ():
             remedy = "Give a constant speed, or remove it."
             allowed = (
                 "at a constant speed alone: no level beside the track is computed of a speed that changes"
