@@ -322,7 +322,8 @@ class BearingUnderLoad(AnyCase):
         """
         from asperity.structures.ring import Ring
 
-        of, angle = self.bearing.bearing, self.static.contact_angle
+        of = self.bearing.bearing
+        angle = self.static.contact_angle
         at_balls = 2.0 * np.pi / of.balls * np.arange(of.balls)
         found = self.resolving(self.ball_resonance)
         rings = zip((self.shaft, self.housing), self.bending_rings(), self.contacts, strict=True)
