@@ -8,20 +8,22 @@ Entries take the compiler longer than most kernels: numba makes two, for Python 
 every array of every named tuple in them. So only what Python calls has one, and none has one for C. What
 has none is optimised, and made machine code, as part of what has one alone: numba would do both at every
 kernel, for it and for all that it calls. Python looks for no garbage meanwhile, which took a third of the
-time before LLVM's.
+time before LLVM's; the type of an operator on numbers is looked for once, which took a fifth, and passes
+over what kernels do not contain are left out.
 
 What numba would keep are pickles, and machine code that is run as it is. So only files are read that are
 as they were written, by their seal, in a folder that nobody but the user can write to; a file is named by all
 that it depends on. What is damaged, incomplete or of another version counts as missing, and is compiled anew.
 
 For this `_nrt`, `forceinline`, the options without entries, `_cache` of a kernel, the parts of a
-compilation and the steps of a library are needed, which numba does not document. They are tested with numba
-0.60 to 0.68: the oldest that is allowed and the newest there is. Where one is missing plain `numba.njit`
-serves, which a warning says.
+compilation, its passes, the types of calls and the steps of a library are needed, which numba does not
+document. They are tested with numba 0.60 to 0.68: the oldest that is allowed and the newest there is. Where
+one is missing plain `numba.njit` serves, which a warning says.
 """
 
 import gc
 import hashlib
+import operator
 import pickle
 import re
 import sys
@@ -57,6 +59,13 @@ UNCHECKED: dict[str, Any] = {"error_model": "numpy"}
 DOCUMENTED = ("error_model", "fastmath", "inline", "nogil")
 HIDDEN = ("_nrt", "forceinline", "no_cpython_wrapper", "no_cfunc_wrapper")
 STEPS = ("_optimize_final_module", "_finalize_final_module")
+NEEDLESS = {
+    "WithLifting", "InlineClosureLikes", "RewriteDynamicRaises", "MakeFunctionToJitFunction",
+    "FindLiterallyCalls", "LiteralUnroll", "LiteralPropagationSubPipelinePass", "InlineOverloads",
+    "NopythonRewrites", "NoPythonSupportedFeatureValidation", "AnnotateTypes", "DumpParforDiagnostics",
+}  # fmt: skip
+"""Passes over closures, ``with``, ``raise`` with values, literals, array expressions and what people read."""
+OPERATORS = {each for each in vars(operator).values() if callable(each)}
 
 
 try:
@@ -67,15 +76,20 @@ try:
     from numba.core.registry import CPUDispatcher
     from numba.core.runtime.nrt import rtsys
     from numba.core.serialize import dumps
+    from numba.core.types import Boolean, Number
+    from numba.core.types.functions import BaseFunction
 
     PLAIN = not all(
         [hasattr(CPUTargetOptions, name) for name in HIDDEN]
         + [hasattr(CompileResult, name) for name in ("_reduce", "_rebuild")]
         + [hasattr(JITCodeLibrary, name) for name in STEPS]
+        + [hasattr(BaseFunction, "get_call_type"), hasattr(Compiler, "define_pipelines")]
     )
 except ImportError:
     CPUDispatcher = NullCache = Compiler = JITCodeLibrary = object  # type: ignore[assignment,misc]
     PLAIN = True
+else:
+    FIND_TYPE: Any = getattr(BaseFunction, "get_call_type", None)
 if PLAIN:
     warnings.warn(
         f"numba {version('numba')} lacks what asperity needs to keep compiled functions: every start "
@@ -108,14 +122,46 @@ def _collected_in(kind: type, codegen: Any) -> Iterator[None]:
         codegen._library_class = before
 
 
+_typed: dict[tuple[Any, tuple[Any, ...]], Any] = {}  # operators on types of numbers
+
+
+def _type_once(function: Any, context: Any, types: tuple[Any, ...], named: dict[str, Any]) -> Any:
+    """What numba finds that a call gives, of an operator on numbers only once."""
+    asked = (function.typing_key, types)
+    if asked in _typed:
+        return _typed[asked]
+    found = FIND_TYPE(function, context, types, named)
+    if asked[0] in OPERATORS and all(isinstance(each, (Number, Boolean)) for each in types):
+        _typed[asked] = found
+    return found
+
+
+@contextmanager
+def _operators_typed_once() -> Iterator[None]:
+    """Let numba not look for the type of an operator again wherever it stands."""
+    before = BaseFunction.get_call_type
+    BaseFunction.get_call_type = _type_once  # type: ignore[method-assign,assignment]
+    try:
+        yield
+    finally:
+        BaseFunction.get_call_type = before  # type: ignore[method-assign]
+
+
 class _Compiler(Compiler):
     """Numba's compiler, of a kernel with an entry."""
+
+    def define_pipelines(self) -> Any:
+        """What numba does, without what no kernel needs."""
+        managers = super().define_pipelines()
+        for each in managers:
+            each.passes = [entry for entry in each.passes if entry[0].__name__ not in NEEDLESS]
+        return managers
 
     def compile_extra(self, function: Callable[..., Any]) -> Any:
         """Compile a function, and of all that it calls no more than it needs."""
         codegen = self.state.targetctx.codegen()
         self.state.library = self._library(codegen, function.__qualname__)
-        with _garbage_left(), _collected_in(_Part, codegen):
+        with _garbage_left(), _operators_typed_once(), _collected_in(_Part, codegen):
             return super().compile_extra(function)
 
     def _library(self, codegen: Any, name: str) -> Any:
