@@ -2,14 +2,17 @@
 
 import gc
 import importlib.util
+import operator
 import os
 import subprocess
 import sys
 import warnings
+from collections import defaultdict
 
 import numba
 import pytest
 from numba.core import event
+from numba.core.types.functions import BaseFunction
 
 from asperity import store
 from asperity.kernels import options
@@ -258,3 +261,32 @@ def test_python_looks_for_no_garbage_while_it_compiles_and_then_as_before(folder
         assert gc.isenabled() == looking
     finally:
         gc.enable()
+
+
+class Passes(Looking):
+    """Which passes run over each function."""
+
+    def __init__(self):
+        self.seen = defaultdict(list)
+
+    def on_start(self, event):
+        self.seen[event.data["qualname"]].append(event.data["name"])
+
+
+def test_an_operator_on_numbers_is_typed_once_and_needless_passes_are_left_out(folder, module, monkeypatch):
+    """And numba is as it was, for what others compile."""
+    before = BaseFunction.get_call_type
+    asked, find = [], options.FIND_TYPE
+    count = lambda *given: (asked.append((given[0].typing_key, given[2])), find(*given))[1]  # noqa: E731
+    monkeypatch.setattr(options, "FIND_TYPE", count)
+    monkeypatch.setattr(options, "_typed", {})
+    with event.install_listener("numba:run_pass", Passes()) as listener:
+        fresh(module)
+        with pytest.raises(numba.TypingError):
+            options.compiled(**options.LOOP)(lambda x: x.nothing)(1.0)
+    on_numbers = [each for each in asked if each[0] in options.OPERATORS]
+    assert any(each[0] is operator.add for each in on_numbers)
+    assert len(on_numbers) == len(set(on_numbers))
+    of_numba = listener.seen["as_numba_has_it.<locals>.<lambda>"]
+    assert len(of_numba) - len(listener.seen["inlined"]) == len(options.NEEDLESS)
+    assert BaseFunction.get_call_type is before
