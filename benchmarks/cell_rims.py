@@ -5,6 +5,7 @@
     python benchmarks/cell_rims.py --rough    # rough balls against grids four times as fine
     python benchmarks/cell_rims.py --choice   # where covered cells serve better: `SMOOTH`
     python benchmarks/cell_rims.py --fresh    # likewise, textures that nothing was chosen by
+    python benchmarks/cell_rims.py --raceways # a ball in the groove of a 6205, against finer grids
     python benchmarks/cell_rims.py --cost     # time and iterations against those of whole cells, in turn
 
 The contact of a ball on a half-space is known in closed form: half-width, approach, radius and modulus E*
@@ -27,7 +28,7 @@ import time
 import numpy as np
 from scan_step import MODULUS, problem
 
-from asperity import HalfSpace, Hertz
+from asperity import BallBearing, HalfSpace, Hertz
 from asperity.contact.scan import ScanJob, scan_forces
 from asperity.kernels.batched import convolve_padded, padded_spectrum
 from asperity.kernels.influence import means_table
@@ -324,6 +325,45 @@ def forces_of(gap, cells, width, approaches):
     return np.array(forces)
 
 
+def check_raceways(positions=6):
+    """Print force and stiffness of a ball on a rough raceway, a slender contact, against finer cells."""
+    contact, load, shortest = BallBearing.named("6205").inner_contact, 50.0, 50e-6
+    first = contact.approach(load)
+    axes, approaches = contact.semi_axes(first), first * np.linspace(0.9, 1.1, 11)
+    waves = np.exp(np.random.default_rng(7).uniform(*np.log([shortest, 0.5e-3]), 60))
+    angles, phases = np.random.default_rng(8).uniform(0.0, 2.0 * math.pi, (2, 60))
+
+    def forces(along, across, cells, rms):
+        grid = np.array([axes[0] / along, across])
+        x, y = (
+            np.arange(-n, n + 1) * d for n, d in zip(np.ceil(1.5 * np.divide(axes, grid)), grid, strict=True)
+        )
+        body, found = np.add.outer(x**2 / (2 * contact.radius_x), y**2 / (2 * contact.radius_y)), []
+        space = HalfSpace(body.shape, tuple(grid), contact.modulus, cells=cells)
+        for place in np.linspace(0.0, 0.4e-3, positions):
+            k = 2.0 * math.pi / waves
+            texture = np.zeros_like(body)
+            for each, angle, phase, size in zip(k, angles, phases, waves**0.8, strict=True):
+                wave = np.add.outer(each * math.cos(angle) * (x + place), each * math.sin(angle) * y)
+                texture += size * np.cos(wave + phase)
+            texture *= rms / math.sqrt(0.5 * np.sum(waves**1.6))
+            gap = cell_means(body) + pressed_heights(texture) if cells == "covered" else body + texture
+            found.append([space.solve(gap, approach=each, rtol=1e-6).force for each in approaches])
+        return np.array(found)
+
+    print(
+        "| rms, nm | cells | along | across, um | F, rms, % | k, rms, % | k, most, % |\n" + 7 * "|---" + "|"
+    )
+    for rms in (0.0, 20e-9, 100e-9):
+        exact = forces(20, shortest / 6, "covered", rms)
+        for cells, along in (("whole", 8), ("covered", 8), ("covered", 6), ("covered", 5), ("covered", 4)):
+            found = forces(along, shortest / 3, cells, rms)
+            steps = 100.0 * (np.diff(found) / np.diff(exact) - 1.0)
+            off = 100.0 * math.sqrt(np.mean((found / exact - 1.0) ** 2))
+            row = f"| {1e9 * rms:.0f} | {cells} | {along} | {1e6 * shortest / 3:.1f} | {off:.3f} "
+            print(row + f"| {math.sqrt(np.mean(steps**2)):.2f} | {np.abs(steps).max():.2f} |", flush=True)
+
+
 def cost(rounds=21):
     """Print time and iterations of scans of 64 contacts, and of 8 approaches at each, against whole cells."""
     print(
@@ -359,7 +399,7 @@ def cost(rounds=21):
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     work = {"check": check, "rough": check_rough, "choice": check_choice}
-    work |= {"fresh": check_fresh, "cost": cost}
+    work |= {"fresh": check_fresh, "raceways": check_raceways, "cost": cost}
     chosen = parser.add_mutually_exclusive_group()
     for name, function in work.items():
         chosen.add_argument(f"--{name}", dest="work", action="store_const", const=function)

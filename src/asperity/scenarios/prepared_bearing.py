@@ -165,6 +165,7 @@ def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], preparin
     textured = sum(bool(getattr(case, case.called(key)).given()) for key in ON)
     runs = len(case.laws) + textured + (textured > 0)
     solutions = _contact_solutions(prepared)
+    cells = _cells_at_rims(prepared)
     rolled_once = STEP_TIME[found.bearing.ELEMENT] * steps * found.bearing.balls
     rolled_once *= TILTED if case.tilts else 1.0
     parts = {
@@ -201,6 +202,7 @@ def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], preparin
         ),
         ("runs", ", ".join(case.laws) + alone),
         *((f"contact solutions, {name}", f"at most {count}") for name, count in solutions.items()),
+        *(("cells at rims", f"{kind} on the {name}") for name, kind in cells.items()),
         *films_in_words(prepared),
         ("not in it", omitted_from(case)),
     ]
@@ -210,7 +212,8 @@ def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], preparin
         rows.insert(
             1, ("load that turns", f"{in_newtons(case.rotating)}, once in {1e3 / case.speed:.4g} ms{fastest}")
         )
-    return rows, preparing.Work({}, solutions, steps, None, taken, pace * compiling.time_to_compile("whole"))
+    compiled = pace * compiling.time_to_compile(*{"whole", *cells.values()})
+    return rows, preparing.Work({}, solutions, steps, None, taken, compiled)
 
 
 def _contact_solutions(prepared: PreparedBearing) -> dict[str, int]:
@@ -225,6 +228,14 @@ def _contact_solutions(prepared: PreparedBearing) -> dict[str, int]:
     for law in (law for law in case.laws if spec_of(law).solved_every_step):
         solutions[law] = case.steps_taken * int(case.static.touching.max() + case.static.bearing.balls)
     return solutions
+
+
+def _cells_at_rims(prepared: PreparedBearing) -> dict[str, str]:
+    """How cells at rims count on raceways, by their names, where a law sees heights."""
+    if not any(spec_of(law).sees_heights for law in prepared.case.laws):
+        return {}
+    ons = zip(RINGS, raceways_of(prepared, progress=None), strict=True)
+    return {NAMES[name]: on.seen.cells for name, on in ons}
 
 
 def _tilt_in_words(case: BearingUnderLoad) -> str:

@@ -11,6 +11,7 @@ import numpy as np
 
 from asperity.arguments import Array, ArrayLike, NDArray, positive
 from asperity.contact import scan
+from asperity.contact.batched import find_device
 from asperity.contact.halfspace import HalfSpace
 from asperity.contact.hertz import Hertz
 from asperity.contact.scan import FORCE_ACCURACY, ScannedForces, rtol_for
@@ -31,9 +32,11 @@ from asperity.reduction.texture import StateTexture, areal_texture, punch_weight
 from asperity.scenarios import raceway_grids, reducing
 from asperity.scenarios.geometry import HIGHEST_FORCE, Geometry
 from asperity.scenarios.raceway_grids import HALF_WINDOW
+from asperity.scenarios.rim_cells import SMOOTH
 from asperity.scenarios.scanned_positions import OF_TEXTURE, OF_WAVE
 from asperity.scenarios.scanned_states import states_around, states_expected
 from asperity.store import Store
+from asperity.surfaces.cell_means import pressed_heights
 from asperity.surfaces.edges import Edges
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.raceway import Raceway
@@ -48,6 +51,13 @@ REMEDIES = "accuracy", "A smaller time step, or a larger static load: windows ho
 """For contacts solved in every step on raceways."""
 SAMPLES = 8
 """Places of a rough raceway whose mean is its force curve."""
+OF_SMOOTH = 2.5
+"""Positions in a half axis, at most, on what is smooth.
+
+Planes hold what is of first order at every row: positions are for the second order alone.
+"""
+OF_SMOOTH_WAVE = 3
+"""Positions in the shortest wave that is looked at there."""
 FILTER_STRIPS = 4
 """Pieces of a rough raceway on which contact filters are found."""
 FILTER_LENGTH = 60.0
@@ -110,11 +120,27 @@ class OnRaceway:
         return next(each for each in range(most, 0, -1) if self.rows % each == 0)
 
     @cached_property
+    def roughness(self) -> float:
+        """Rms height of both surfaces over the approach under the load; infinite where there are faults."""
+        if any(each.damaged.any() for each in (self.surface, *self.balls)):
+            return math.inf
+        on_balls = max((float(np.var(each.heights)) for each in self.balls), default=0.0)
+        rms = math.sqrt(float(np.var(self.surface.heights)) + on_balls)
+        return rms / self.contact.approach(self.load)
+
+    @cached_property
     def scanned_stride(self) -> int:
-        """Rows between positions of the scan, whole strides: those of a path, see `table_stride`."""
+        """Rows between positions of the scan, whole strides: those of a path, see `table_stride`.
+
+        Where `roughness` is 0.01 to 0.1, 2.7 in a half axis have the levels of a position in every row within
+        0.1 dB on waves from 1.2 half axes on.
+        """
         if self.surface.damaged.any():
             return self.stride
-        apart = min(self.axes[0] / OF_TEXTURE, self.shortest / OF_WAVE) / self.surface.spacing[0]
+        smooth = self.roughness <= SMOOTH
+        in_patch = OF_SMOOTH if smooth else OF_TEXTURE
+        in_wave = OF_SMOOTH_WAVE if smooth else OF_WAVE
+        apart = min(self.axes[0] / in_patch, self.shortest / in_wave) / self.surface.spacing[0]
         times = max(1, math.floor(apart / self.stride * (1.0 + 1e-3)))
         count = len(self.positions)
         return self.stride * next(each for each in range(times, 0, -1) if count % each == 0)
@@ -160,6 +186,21 @@ class OnRaceway:
     def scanned(self) -> Array:
         """Roughness and faults (rows + window − 1, lines), m: row i is the window's first about row i."""
         return self._around(self.surface.heights + self.surface.faults, len(self.shape.body) // 2)
+
+    @cached_property
+    def seen(self) -> Geometry:
+        """The gap as laws have it that see heights: over cells that are covered in part, or whole ones.
+
+        Covered where the case `auto` of `contact.rim_cells` has them: on what is smooth and has no faults.
+        """
+        covered = self.roughness <= SMOOTH and find_device() is None
+        return self.shape.over_cells() if covered else self.shape
+
+    def pressed(self, heights: Array, beyond: int) -> Array:
+        """Heights (rows, lines), m, as such laws press them, with rows from the other end beyond a turn."""
+        if self.seen.cells == "whole":
+            return self._around(heights, beyond)
+        return pressed_heights(self._around(heights, beyond + 2))[2:-2]
 
     def _edges_in(self, rows: slice) -> Edges | None:
         """Edges on some rows of `scanned`, if there are any."""
@@ -272,6 +313,8 @@ class OnRaceway:
         Where nothing is in the window they are solved once.
         """
         window, lines = self.shape.body.shape
+        heights = self.pressed(self.surface.heights + self.surface.faults, window // 2)
+        space = self.seen.half_space(self.hardness)
         stride = self.scanned_stride
         step = stride // self.stride
         new = self._met(self.surface.heights.astype(bool) | self.surface.damaged)[::step]
@@ -282,14 +325,14 @@ class OnRaceway:
             runs.append((~new, alike, np.zeros(1), None))
         for first, stop in np.flatnonzero(np.diff(new, prepend=False, append=False)).reshape(-1, 2):
             rows = slice(first * stride, (stop - 1) * stride + window)
-            runs.append((slice(first, stop), self.scanned[rows], planes[first:stop], self._edges_in(rows)))
+            runs.append((slice(first, stop), heights[rows], planes[first:stop], self._edges_in(rows)))
         approaches = self.approaches[states]
         counts = list[scan.Counts]()
         single = False
         forces = np.empty((len(approaches), len(new)))
-        for state, (at, heights, felt, edges) in product(range(len(approaches)), runs):
-            solved = self.shape.body, approaches[state], stride, rtol_for(self.accuracy), felt
-            job = scan.ScanJob(self.space, Rows(heights), *solved, edges=edges)
+        for state, (at, under, felt, edges) in product(range(len(approaches)), runs):
+            solved = self.seen.body, approaches[state], stride, rtol_for(self.accuracy), felt
+            job = scan.ScanJob(space, Rows(under), *solved, edges=edges)
             found = scan.scan_forces(job, cache=self.cache, progress=self.progress)
             forces[state, at] = found.forces[0]
             counts.append(found.counts)
@@ -434,7 +477,7 @@ class OnRaceway:
             "areal": self._areal,
             "plane": lambda: self._texture(self.felt),
             "table": lambda: self.table_in(states or slice(0, len(self.approaches))),
-            "heights": lambda: self._around(surface.heights + surface.line[:, None], half),
+            "heights": lambda: self.pressed(surface.heights + surface.line[:, None], half),
         }
         edges = surface.edges
         if surface.faults.any() or edges:
@@ -444,8 +487,8 @@ class OnRaceway:
         own = self.parameters.get(law.name) or {n: each.default for n, each in law.parameters.items()}
         return Materials(
             law, self.damping, self.load, self.contact.stiffness_constant, self.contact.modulus,
-            (approach, self.contact.tangent_stiffness(approach)), -half * surface.spacing[0], self.shape.body,
-            surface.spacing, self.hardness, rtol_for(self.accuracy), own, made_by,
+            (approach, self.contact.tangent_stiffness(approach)), -half * surface.spacing[0], self.seen.body,
+            surface.spacing, self.hardness, rtol_for(self.accuracy), own, made_by, cells=self.seen.cells,
             remedies=REMEDIES,
         )  # fmt: skip
 

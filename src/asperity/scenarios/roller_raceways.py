@@ -124,6 +124,11 @@ class OnRollerRaceway(OnRaceway):
         largest = HIGHEST_FORCE * self.load
         return RollerGap(gap, (step, width), self.contact.modulus, contact, self.load, largest)
 
+    @property
+    def seen(self) -> RollerGap:
+        """The same: slices are in contact or not."""
+        return self.shape
+
     @cached_property
     def approaches(self) -> Array:
         """Approaches of the force curve, m, up to that of eight times the load."""
