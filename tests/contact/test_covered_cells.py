@@ -312,6 +312,24 @@ def test_nothing_is_left_of_the_gap_far_inside_a_rim():
         assert rims.remaining_gap(rims.END, slant)[0] == pytest.approx(0.0, abs=1e-12)
 
 
+@pytest.mark.parametrize("cell", [(12, 0), (-12, 0), (0, 11), (8, -9), (-8, -8), (10, 6)])
+def test_pressure_inside_a_rim_bends_by_the_side_of_a_cell_over_the_half_width(cell):
+    """p² = 1 − r² of a ball with 12 cells in the half-width, rims along the grid and aslant."""
+    n = np.arange(-14, 15) / 12.0
+    pressure = np.sqrt(np.maximum(1.0 - np.add.outer(n**2, n**2), 0.0))
+    i, j = (14 + each for each in cell)
+    p = np.pad(pressure, 1)
+    x, y = p[i + 2, j + 1] - p[i, j + 1], p[i + 1, j + 2] - p[i + 1, j]
+    slant = min(abs(x), abs(y)) / max(abs(x), abs(y))
+    assert rims.bend_inside(pressure, i, j, x, y, slant) == pytest.approx(rims.BEND_SHARE / 12.0, rel=0.2)
+
+
+def test_asperities_of_few_cells_bend_as_the_smallest_that_are_resolved():
+    lone = np.zeros((7, 7))
+    lone[3, 3], lone[2, 3] = 2.0, 1.0
+    assert rims.bend_inside(lone, 2, 3, 2.0, 0.0, 0.0) == rims.MOST_BENT
+
+
 def on_a_device():
     """A scan of covered cells, solved in batches."""
     half_space, gap = ball_on_cells(2)
