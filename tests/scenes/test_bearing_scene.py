@@ -17,7 +17,7 @@ from asperity.errors import CaseError, ComputationError, InputError, OutOfRangeW
 from asperity.parameters import Number, key
 from asperity.reference.materials import MATERIALS
 from asperity.running import prepare_case
-from asperity.scenarios import raceway_laws, roller_raceways, run_time, scanned_states
+from asperity.scenarios import compiling, raceway_laws, roller_raceways, run_time, scanned_states
 from asperity.scenarios.prepared_bearing import CELL_TIME, expected, prepare_bearing
 from asperity.scenes import computed_bearing
 from asperity.scenes.bearing_heard import heard_group
@@ -458,6 +458,19 @@ def test_the_time_told_counts_the_contacts_that_are_solved_over_faults(monkeypat
     assert 0.95 * sum(solved) < told <= (1 + 1e-9) * sum(solved)  # a few more hold what areal takes them for
     _, work = expected(prepare_case(case.with_(fault=None)))
     assert work.time.parts["contacts over the faults"] == 0.0
+
+
+def test_a_plan_says_how_cells_at_rims_count_and_compiles_both_kinds(monkeypatch):
+    """On the damaged raceway they are whole; laws that do not see heights have no others."""
+    monkeypatch.setattr(compiling, "is_kept", lambda kernel: kernel == compiling.ROLLING)
+    case = as_case(BEARING | {"laws": ["table"]})
+    rows, work = expected(prepare_case(case))
+    told = [text for name, text in rows if name == "cells at rims"]
+    assert told == ["covered on the inner raceway", "whole on the outer raceway"]
+    rows, blind = expected(prepare_case(case.with_(laws=["hertz"])))
+    assert "cells at rims" not in dict(rows)
+    longer = work.compiling - blind.compiling
+    assert longer == pytest.approx(run_time.pace() * compiling.CELLS_TIME["covered"])
 
 
 @pytest.mark.parametrize(
