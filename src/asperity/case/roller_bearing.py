@@ -172,10 +172,13 @@ class RollerBearingUnderLoad(BearingUnderLoad):
             remedy = "Its force on rollers is that of slices; the others are made for the ellipse of a ball."
             yield InputError("laws", ", ".join(others), f'"{BY_SLICES}"', remedy)
             return
-        for name in ("friction", "wear_coefficient"):
-            if (given := getattr(self, name)) is not None:
+        sliding = {name: getattr(self, name) for name in ("friction", "wear_coefficient")}
+        sliding |= {f"creep.{name}": each for name, each in self.creep.given().items()}
+        for name, given in sliding.items():
+            if given is not None:
                 allowed = "none: rollers slide nowhere but at ribs, which are not in it"
-                yield InputError(name, f"{given:g}", allowed, "Leave it out.")
+                remedy = 'Leave it out; kind = "ball-bearing" has friction.'
+                yield InputError(name, f"{given:g}", allowed, remedy)
                 return
         if self.axial > 0.0 and self.bearing.bearing.contact_angle == 0.0:
             remedy = "Rollers slide along such raceways, and ribs are not in it. Give a contact_angle."
