@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from asperity.case.cases import as_case
-from asperity.errors import CaseError
+from asperity.errors import CaseError, Grade, percent
 from asperity.scenes import schema
-from asperity.scenes.creep import ball_group
+from asperity.scenes.creep import OF_BALLS, ball_group
 from asperity.schema import bearing
 from asperity.speeds import SpeedCourse
 from asperity.structures.bearing_creepage import creepage_of
@@ -100,6 +100,21 @@ def test_friction_of_the_case_falls_in_time_and_at_rest():
     }
     assert heat["slowly"] == pytest.approx(heat["stays"], rel=1e-3)
     assert heat["at once"] == pytest.approx(0.5 * np.array(heat["stays"]), rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("speed", "friction", "grade"),
+    [("1800 1/min", 0.05, None), ("30000 1/min", 0.05, Grade.WARNING), ("60000 1/min", 0.02, Grade.OUT)],
+)
+def test_balls_that_gyrate_beyond_what_is_computed_are_told(speed, friction, grade):
+    """The moment goes with the square of the speed; friction holds what it does."""
+    of = as_case(BEARING | EVEN | {"speed": speed, "axial": "400 N", "friction": friction})
+    found = list(OF_BALLS.findings(run_of(of, at_rest(of))))
+    assert [each.grade for each in found] == [grade] * (grade is not None)
+    gyration = ball_group(run_of(of, at_rest(of)))[bearing.GYRATION]
+    for each in found:
+        assert each.value == percent(float(gyration.max()))
+        assert "from 100 % on balls pivot sideways" in each.message
 
 
 RUN_UP = [["0 s", "900 1/min"], ["60 ms", "1800 1/min"]]

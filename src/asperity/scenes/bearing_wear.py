@@ -1,6 +1,5 @@
 """Wear of the raceways of a ball bearing over the angle around them, by Archard's law."""
 
-from asperity.contact.hertz import Hertz
 from asperity.scenes.computed_bearing import ComputedBearing
 from asperity.scenes.observer import Observer
 from asperity.schema import Values, bearing
@@ -21,7 +20,7 @@ def wear_group(computed: ComputedBearing) -> Values:
 
 
 def _wears(computed: ComputedBearing) -> bool:
-    return computed.case.wear_coefficient is not None and isinstance(computed.case.contacts[0][0], Hertz)
+    return computed.case.wear_coefficient is not None
 
 
 OBSERVER = Observer(

@@ -149,14 +149,21 @@ def friction_of_balls(
     speed = rolling_speed(loaded.bearing, turning)
     solved = [facts_of_contacts(loaded, found, ring, friction, speed, _facts) for ring in RINGS]
     work, slip_share, moment = np.moveaxis(np.array(solved), -1, 0)
+    gyration = gyration_of(loaded, found, turning, friction)
+    return BearingFriction(speed * work, slip_share, moment, gyration)
+
+
+def gyration_of(
+    loaded: LoadedBearing, found: BearingCreepage, turning: Kinematics, friction: Friction
+) -> Array:
+    """Moment by which balls gyrate over what friction holds at most (m, Z), as of `BearingFriction`."""
     of = loaded.bearing
     radius = 0.5 * of.ball_diameter
     momentum = 0.4 * of.ball_mass * radius**2 * 2.0 * math.pi * turning.spin
     gyrating = momentum * 2.0 * math.pi * abs(turning.cage) * np.sin(np.abs(found.axis))
     held = np.asarray(friction.static) * (loaded.inner_load + loaded.outer_load) * radius
     gyration = np.where(np.isnan(found.axis), np.nan, np.inf)
-    np.divide(gyrating, held, out=gyration, where=held > 0.0)
-    return BearingFriction(speed * work, slip_share, moment, gyration)
+    return np.divide(gyrating, held, out=gyration, where=held > 0.0)
 
 
 def rolling_speed(bearing: BallBearing, turning: Kinematics) -> float:
