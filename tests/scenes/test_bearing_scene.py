@@ -23,7 +23,7 @@ from asperity.scenes import computed_bearing
 from asperity.scenes.bearing_heard import heard_group
 from asperity.scenes.bearing_validity import out_of_place
 from asperity.scenes.computed_bearing import bearing_rings, cage_slip, compute_bearing, thinned
-from asperity.scenes.figures.bearing import ball_turn, load_zone
+from asperity.scenes.figures.bearing import ball_sliding_table, ball_turn, load_zone
 from asperity.scenes.figures.sideways import friction_table
 from asperity.scenes.report import page_of
 from asperity.schema import bearing as schema
@@ -374,6 +374,18 @@ def test_balls_slide_in_their_grooves_without_spin_under_a_radial_load(runs):
         np.testing.assert_allclose(heat[row][between], expected[between], rtol=3e-3)
         np.testing.assert_allclose(rim[row][between], (1.0 - 0.3473**2) * at_rim[between], rtol=1e-4)
     page = page_of(tree)
+    sliding = ball_sliding_table(tree)
+    assert sliding.head == [
+        "ball at",
+        "contact with",
+        "spin / (rad/m)",
+        "sliding at the rim / %",
+        "heat over μ / W",
+    ]
+    rows = [[cell.text for cell in row[:2]] for row in sliding.rows[:4]]
+    assert rows == [["0°", "inner ring"], ["0°", "outer ring"], ["40°", "inner ring"], ["40°", "outer ring"]]
+    told = [float(row[4].text) for row in sliding.rows[:2]]
+    np.testing.assert_allclose(told, heat[:, 0, 0], rtol=5e-3)
     assert "Sliding of the balls" in page
     for of_paths in ("How far the levels may be off", "contacts vary by, rms", "contact 1 of"):
         assert of_paths not in page

@@ -132,9 +132,8 @@ def test_what_sticks_does_not_wear(bearing, load):
     np.testing.assert_allclose(found.volume, COEFFICIENT / bearing.hardness * of_rings / 0.1, rtol=1e-9)
     assert np.all(found.volume < 0.99 * most.volume)
     step = found.across[:, 1] - found.across[:, 0]
-    np.testing.assert_allclose(  # but for a cell at the rim
-        found.depth.sum(axis=2) * step[:, None], found.area, rtol=1.0 / 24.0, atol=2e-3 * found.area.max()
-    )
+    sums = found.depth.sum(axis=2) * step[:, None]
+    np.testing.assert_allclose(sums, found.area, rtol=0.02, atol=2e-3 * found.area.max())
     slippery = raceway_wear(loaded, turning, COEFFICIENT, Friction(5e-3))
     np.testing.assert_allclose(slippery.volume, most.volume, rtol=0.015)
     # but for a cell at the rim, and, with spin, for lines of pure rolling that no force drives

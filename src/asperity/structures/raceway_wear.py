@@ -112,16 +112,19 @@ def _slid(
 def _slid_of(contact: SlidingContact) -> Array:
     """∫ p s dA, N, and then ∫ p s dx at places across, N/m, of a contact that sticks and slips.
 
-    Slip of cells misses a part of the work, and is scaled to it.
+    Slip of cells misses a part of the work, and is scaled to it; places are scaled to what all cells have.
     """
     space = contact.normal.half_space
     cells = contact.normal.pressure * np.hypot(*contact.slip) * ~contact.sticks
-    scale = contact.work / contact.work_of_slip if contact.work_of_slip > 0.0 else 1.0
-    line = scale * space.spacing[0] * cells.sum(axis=0)
+    if not cells.any():
+        return np.zeros(1 + ACROSS)
+    whole = float(cells.sum()) * space.cell_area * contact.work / contact.work_of_slip
     _, y = cell_places(space)
-    half_axis = 0.5 * space.shape[1] * space.spacing[1] / ROOM
+    places = 0.5 * space.shape[1] * space.spacing[1] / ROOM * SHARES
     # its surfaces run against the path, so that spin adds on the other side than to `sliding_across`
-    return np.array([line.sum() * space.spacing[1], *np.interp(half_axis * SHARES, y[0], line[::-1])])
+    line = np.interp(places, y[0], cells.sum(axis=0)[::-1])
+    line[[0, -1]] = 0.0  # of the rim, whose cells reach beyond it
+    return np.array([whole, *(line * whole / np.trapezoid(line, places))])
 
 
 def _worn(

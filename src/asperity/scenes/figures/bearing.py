@@ -11,8 +11,8 @@ from asperity.diagnostics.kurtogram import LEAST_POWER
 from asperity.reporting import chart, data, panels
 from asperity.reporting.figure import Lines, Of, figure
 from asperity.reporting.headline import Answers, HeadlineNumber
-from asperity.reporting.tables import ReportTable, in_digits, number_cells, table, text_cells
-from asperity.schema import bearing, provenance, rolling, spectra
+from asperity.reporting.tables import Cell, ReportTable, Writer, in_digits, number_cells, table, text_cells
+from asperity.schema import Entry, bearing, provenance, rolling, spectra
 from asperity.written_numbers import between, in_newtons, plain, rounded
 
 CORNERS = 180
@@ -449,22 +449,37 @@ def lines_table(tree: DataTree) -> ReportTable:
     return table("tones", "Tones of the parts", columns, note)
 
 
+Shown = tuple[Entry, str, float, str | Writer]
+"""A quantity of contacts in a table: its entry, its head, the size of its unit, how it is written."""
+
+
+def _contact_columns(tree: DataTree, *shown: Shown) -> dict[str, list[Cell]]:
+    """Columns of contacts at rest, the first ball below the load: of each with both rings."""
+    element = _element(tree)
+    rings = data.words(tree, bearing.RING)
+    at = np.round(_degrees(data.values(tree, bearing.AZIMUTH)[0])) + 0.0
+    loose = data.values(tree, bearing.BALL_LOAD)[:, 0] == 0.0  # (ring, ball)
+    columns = {
+        f"{element} at": number_cells(np.repeat(at, len(rings)), "{:.0f}°"),
+        "contact with": text_cells(f"{ring} ring" for _ in at for ring in rings),
+    }
+    for entry, head, size, form in shown:
+        values = np.where(loose, np.nan, data.values(tree, entry)[:, 0] / size)
+        columns[head] = number_cells(values.T.ravel(), form)
+    return columns
+
+
 def ball_contacts_table(tree: DataTree) -> ReportTable:
     """Contacts of each ball at rest."""
-    degrees = _degrees(data.values(tree, bearing.AZIMUTH)[0])
     element = _element(tree)
-    columns = {f"{element} at": number_cells(np.round(degrees) + 0.0, "{:.0f}°")}
-    shown = (
-        (bearing.BALL_LOAD, "N", 1.0, in_digits(4)), (bearing.BALL_ANGLE, "°", np.pi / 180.0, "{:.1f}"),
-        (bearing.SEMI_AXIS_ALONG, "along, mm", 1e-3, "{:.3f}"),
-        (bearing.SEMI_AXIS_ACROSS, "across, mm", 1e-3, "{:.3f}"),
-        (bearing.PEAK_PRESSURE, "GPa", 1e9, "{:.2f}")
-    )  # fmt: skip
-    for row, ring in enumerate(data.words(tree, bearing.RING)):
-        loose = data.values(tree, bearing.BALL_LOAD)[row, 0] == 0.0
-        for entry, unit, size, form in shown:
-            values = np.where(loose, np.nan, data.values(tree, entry)[row, 0] / size)
-            columns[f"{ring}, {unit}"] = number_cells(values, form)
+    columns = _contact_columns(
+        tree,
+        (bearing.BALL_LOAD, "load / N", 1.0, in_digits(4)),
+        (bearing.BALL_ANGLE, "angle", np.pi / 180.0, "{:.1f}°"),
+        (bearing.SEMI_AXIS_ALONG, "half axis along / mm", 1e-3, "{:.3f}"),
+        (bearing.SEMI_AXIS_ACROSS, "half axis across / mm", 1e-3, "{:.3f}"),
+        (bearing.PEAK_PRESSURE, "largest pressure / GPa", 1e9, "{:.2f}"),
+    )
     moved = 1e6 * data.values(tree, bearing.RING_DISPLACEMENT)
     stiffness = 1e-6 * data.values(tree, bearing.RING_STIFFNESS)
     told = (
@@ -474,9 +489,8 @@ def ball_contacts_table(tree: DataTree) -> ReportTable:
         for way, to, each in zip(data.words(tree, bearing.DIRECTION), moved, stiffness, strict=True)
     )
     note = (
-        f"At rest, the first {element} below the load: load, contact angle, half axes along and across the "
-        f"raceway, largest pressure. The inner ring as a {element} passes, how far it moved and its "
-        "stiffness: "
+        f"At rest, the first {element} below the load; half axes along and across the raceway. The inner "
+        f"ring as a {element} passes, how far it moved and its stiffness: "
         f"{'; '.join(told)}. {data.stated(tree, bearing.LEFT_OUT) or ''}"
     )
     return table("ball_contacts", f"Contacts of the {element}s", columns, note)
@@ -486,19 +500,18 @@ def ball_sliding_table(tree: DataTree) -> ReportTable | None:
     """How each ball slides on its raceways at rest."""
     if not data.present(tree, bearing.SPIN_CREEPAGE):
         return None
-    degrees = _degrees(data.values(tree, bearing.AZIMUTH)[0])
-    columns = {"ball at": number_cells(np.round(degrees) + 0.0, "{:.0f}°")}
-    shown = [
-        (bearing.SPIN_CREEPAGE, "spin, rad/m", 1.0),
-        (bearing.RIM_CREEPAGE, "sliding at the rim, %", 0.01),
-        (bearing.SLIDING_HEAT, "heat/μ, W", 1.0),
+    shown: list[Shown] = [
+        (bearing.SPIN_CREEPAGE, "spin / (rad/m)", 1.0, in_digits(3)),
+        (bearing.RIM_CREEPAGE, "sliding at the rim / %", 0.01, in_digits(3)),
+        (bearing.SLIDING_HEAT, "heat over μ / W", 1.0, in_digits(3)),
     ]
     rubs = data.present(tree, bearing.FRICTION_HEAT)
     if rubs:
-        shown += [(bearing.SLIPPING_SHARE, "slips, %", 0.01), (bearing.FRICTION_HEAT, "heat, W", 1.0)]
-    for row, ring in enumerate(data.words(tree, bearing.RING)):
-        for entry, words, size in shown:
-            columns[f"{ring}, {words}"] = number_cells(data.values(tree, entry)[row, 0] / size, in_digits(3))
+        shown += [
+            (bearing.SLIPPING_SHARE, "slips", 1.0, data.in_percent),
+            (bearing.FRICTION_HEAT, "heat / W", 1.0, in_digits(3)),
+        ]
+    columns = _contact_columns(tree, *shown)
     every = np.nansum(data.values(tree, bearing.SLIDING_HEAT), axis=(0, 2)).mean()
     note = (
         f"Under the static load{_at_fastest(tree)}, the first ball below it. Spin against a raceway is that "
