@@ -268,6 +268,7 @@ def test_corrugation_is_texture_and_a_joint_is_a_defect_into_which_the_wheel_fal
     rms = 1e6 * np.std(found.line[found.recorded])
     told = re.search(r"corrugation: (\S+) µm rms over this record, 14\.1 µm in the long run", found.origin)
     assert float(told[1]) == pytest.approx(rms, rel=5e-3)
+    assert found.drawn["corrugation"].startswith("0.05 m, 0.3 octaves, seed ")
     found, _ = struck(surface={"joint_depth": "2 mm", "joint_position": "1 m"})
     assert np.all(found.trajectory >= found.defects - 1e-12)
     assert found.defects.min() < found.trajectory.min() < 0.0

@@ -485,6 +485,15 @@ def test_a_plan_says_how_cells_at_rims_count_and_compiles_both_kinds(monkeypatch
     assert longer == pytest.approx(run_time.pace() * compiling.CELLS_TIME["covered"])
 
 
+def test_what_is_told_of_a_law_that_solves_every_step_is_at_most_all_balls_on_both_rings():
+    """On the inner ring as many as carry at any angle of the cage, on the outer one all of them."""
+    case = as_case(BEARING | {"laws": ["direct"], "duration": "60 ms"})
+    touching = case.static.touching
+    assert touching.min() < touching.max() < BALLS
+    _, work = expected(prepare_case(case))
+    assert work.solutions == {"direct": work.steps * (int(touching.max()) + BALLS)}
+
+
 @pytest.mark.parametrize(
     ("share", "moved", "words"),
     [(1.0, 1e-5, []), (0.3, 1e-5, ["a mean radial force of 0.3 loads"]), (1.0, D, ["by 100 % of a ball"])],
