@@ -13,9 +13,10 @@ from asperity.case import PRESETS
 from asperity.case.any_case import entries
 from asperity.case.cases import as_case, case_class
 from asperity.errors import CaseError
-from asperity.parameters import ListOf, Number, Quantity, limits_in
+from asperity.parameters import ListOf, Number, Quantity, Text, limits_in
 from asperity.structures.track_parameters import LAYERS
 from asperity.units import quantity
+from refusals import refusals
 
 SOURCE = Path(asperity.__file__).parent
 MODULES = sorted(SOURCE.rglob("*.py"))
@@ -134,3 +135,13 @@ def test_every_key_is_asked_for():
     known = {entry.dotted: entry.name for kind in PRESETS for entry in entries(case_class(kind))}
     assert len(known) > 150
     assert {key for key, name in known.items() if not {key, name} & asked} == set()
+
+
+test_a_text_is_a_word_that_files_can_hold = refusals(
+    ("", "a text in quotes"),
+    (" ", "a text in quotes"),
+    ("a\0b", "a text in quotes"),
+    ("a\udc00", "a text in quotes"),
+    (3, "a text in quotes"),
+    of=lambda word: Text()(word),
+)

@@ -11,7 +11,7 @@ from numpy.testing import assert_array_equal
 from asperity import laws, report, run
 from asperity.case.cases import as_case, parse_case, template
 from asperity.errors import CaseError, InputError
-from asperity.laws import LawSpec, Look, Need, Role, Variant
+from asperity.laws import LawSpec, Look, Need, Role, Variant, spec_of
 from asperity.surfaces.cell_means import pressed_heights
 from small_cases import CASES
 
@@ -157,6 +157,11 @@ def test_what_is_no_law_or_taken_is_refused(call, message):
     with pytest.raises(InputError, match=re.escape(message)):
         call()
     assert laws.names() == before
+
+
+def test_a_variant_has_a_role_of_its_own():
+    roles = {"linear-filtered": Role.PRACTICE, "linear": Role.BARE, "shifted-unfiltered": None}
+    assert {name: spec_of(name).role for name in roles} == roles
 
 
 def test_a_variant_may_not_take_a_name_either(registered):

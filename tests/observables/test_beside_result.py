@@ -122,6 +122,14 @@ def test_stiffness_and_mobility_are_off_by_a_ratio(beside):
     assert_allclose(deviations(tree, "mobility")[0], expected, rtol=1e-9)
 
 
+def test_of_a_mobility_with_its_phase_the_size_is_compared(beside, monkeypatch):
+    rows = "100, 0.6e-3, 0.8e-3\n200, 1.2e-3, 1.6e-3\n300, 1.2e-3, -1.6e-3\n"
+    monkeypatch.setitem(TABLES, "mobility", f"frequency (Hz), real (m/s/N), imaginary (m/s/N)\n{rows}")
+    found = with_tables_beside(beside(BALL, "mobility"), of_beam())["measured"]
+    assert_allclose(found[laid_out.VALUE.name].values, [1e-3, 2e-3, 2e-3])
+    assert (found[laid_out.COMPUTED.name].values > 0.0).all()
+
+
 def test_a_bearing_is_off_in_bands_lines_and_tones(beside):
     """A relative deviation of 0.1 is 0.87 dB, beside 1 dB of measuring."""
     case = beside(BEARING, "band_velocity", "envelope_line", "tone")

@@ -92,7 +92,6 @@ class RollerBearingUnderLoad(BearingUnderLoad):
     TITLE = "A roller bearing runs under a load."
     NEEDED = "a bearing and its load"
     OPTIMISED_BY = ""
-    ROLLS: ClassVar = "roller"
     RENAMED: ClassVar = {"balls": "rollers"}
     WRITTEN_OUT: ClassVar = {
         "bearing.name": '"NU205"', "radial": '"2 kN"', "inner_raceway.waviness": '"0.2 um"',
