@@ -10,6 +10,7 @@ from asperity.case.cases import as_case
 from asperity.contact.scan import first_touch
 from asperity.reduction.stiffness import stiffness_ensemble
 from asperity.running import prepare_case
+from asperity.scenarios.records import read_maps
 from asperity.scenarios.reducing import samples_of
 from asperity.surfaces.synthesis import self_affine
 
@@ -69,6 +70,20 @@ def test_points_that_dropped_out_are_mended_and_without_the_detector_spikes_carr
     # so much do they matter: filled points alone leave spikes on which the ball stands
     _, wrong, _ = loaded(spoilt(texture, 1), approaches, fill=True)
     assert np.abs(wrong / force - 1.0).max() > 0.1
+
+
+def test_a_map_in_a_file_is_mended_as_one_in_memory(clean, tmp_path):
+    bad = spoilt(clean[0], 1)
+    np.save(tmp_path / "map.npy", bad.heights)
+    keys = {
+        "file": str(tmp_path / "map.npy"),
+        "pixel": "4 um",
+        "height_unit": "m",
+        "spikes": True,
+        "fill": True,
+    }
+    (found,) = read_maps(as_case({"kind": "ball-on-beam", "surface": keys}).surface)
+    np.testing.assert_allclose(found.heights, bad.without_spikes().filled().heights, rtol=1e-12)
 
 
 def test_holes(clean):
