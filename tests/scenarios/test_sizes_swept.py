@@ -109,7 +109,8 @@ WITH = {
         "fault count": PIT | {"count": 2},
     },
     "roller-bearing": {
-        "": {"rotating": "20 N", "sensors": ["30 deg"], "cage_slip": [0.01, 0.02]},
+        "": {"rotating": "20 N", "sensors": ["30 deg"], "cage_slip": [0.01, 0.02]}
+        | {"tilt": "0.5 mrad", "rotating_tilt": "0.2 mrad"},
         "bearing": {"crowning": "partial", "crowning_straight": "3 mm", "crowning_drop": "2.6 um"},
         "fault": PIT | {"on": "roller", "roller": 1},
     },
@@ -141,7 +142,7 @@ HARMLESS_SMALL = {
         track.rail_loss_factor track.pad_loss_factor track.ballast_loss_factor track.sleeper_loss_factor
         track.under_sleeper_pad_loss_factor track.subgrade_loss_factor track.rail_damper_loss_factor
         creep.angle_of_attack creep.longitudinal creep.lateral creep.spin sideways.centroid_height
-        axial rotating cage_slip bearing.clearance bearing.contact_angle bearing.preload
+        axial rotating tilt rotating_tilt cage_slip bearing.clearance bearing.contact_angle bearing.preload
         bearing.crowning_straight shaft.damping_ratio housing.damping_ratio
         inner_raceway.amplitudes fault.burr fault.rim fault.rim_width""",
     "a place or an angle, of which any is legal": """
