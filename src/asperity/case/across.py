@@ -300,7 +300,7 @@ def _places_of(section: Profile) -> Array:
     """Places (n,), m, across: as the file has them, else from the middle."""
     count = len(section.heights)
     first = -0.5 * (count - 1) * section.spacing if section.start is None else section.start
-    return np.asarray(first + section.spacing * np.arange(count), dtype=np.float64)
+    return first + section.spacing * np.arange(count, dtype=np.float64)
 
 
 def _levelled(section: Profile, y: Array, flanged: bool) -> tuple[Array, Array]:

@@ -63,8 +63,8 @@ def _installed() -> tuple[str, ...]:
 
 def _take(name: str, law: object) -> LawSpec:
     """Register a law of another package, which calls it by its name."""
-    require(isinstance(law, LawSpec), "law", shown(law), "an asperity.laws.LawSpec")
-    assert isinstance(law, LawSpec)
+    if not isinstance(law, LawSpec):
+        raise InputError("law", shown(law), "an asperity.laws.LawSpec")
     require(law.name == name, "name of the law", shown(law.name), f'"{name}", as its entry point has it')
     _add(law)
     return law

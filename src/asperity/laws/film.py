@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from asperity.arguments import Array, require
+from asperity.arguments import Array
 from asperity.contact.film import Film
+from asperity.errors import InputError
 from asperity.kernels import pointforce
 from asperity.laws import spec
 from asperity.reduction.stiffness import ForceCurve
@@ -44,9 +45,9 @@ class WithFilm(spec.OnLaw):
     def prepare(self, positions: spec.ArrayLike) -> spec.Prepared:
         """Lay the law out on positions (n,) of the contact, m."""
         dry = self.law.prepare(positions)
-        fits = isinstance(dry, pointforce.Prepared)
-        require(fits, "law of a contact with a film", self.name, "one that is not solved in every step")
-        assert isinstance(dry, pointforce.Prepared)
+        if not isinstance(dry, pointforce.Prepared):
+            allowed = "one that is not solved in every step"
+            raise InputError("law of a contact with a film", self.name, allowed)
         if dry.form != pointforce.SHIFTED:
             thickest = float(self.thickness(np.array(0.0)))
             return dry._replace(film=pointforce.SeriesFilm(thickest, LIGHTEST * self.load, self._exponent))

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from asperity.arguments import require
 from asperity.contact.slices import EXPONENT, SlicedContact
+from asperity.errors import InputError
 from asperity.kernels import pointforce
 from asperity.laws import spec
 
@@ -33,10 +33,9 @@ class Tilted(spec.OnLaw):
         """Lay the law out on (n, 2): positions, m, and angles by which the far end comes nearer, rad."""
         at = np.asarray(positions, dtype=float)
         level = self.law.prepare(np.ascontiguousarray(at[:, 0]))
-        follows = isinstance(level, pointforce.Prepared) and level.form == pointforce.SHIFTED
-        allowed = "a force curve that follows a texture, as areal"
-        require(follows, "law of a tilted roller", self.name, allowed)
-        assert isinstance(level, pointforce.Prepared)
+        if not isinstance(level, pointforce.Prepared) or level.form != pointforce.SHIFTED:
+            allowed = "a force curve that follows a texture, as areal"
+            raise InputError("law of a tilted roller", self.name, allowed)
         of = self.contact
         constants = np.full(of.slices, of.stiffness_constant / of.slices)
         return level._replace(

@@ -1,6 +1,7 @@
 """Levels in one-third octaves of a run: sound beside a track, contact force, acceleration."""
 
 from contextlib import suppress
+from typing import Any
 
 import numpy as np
 from xarray import DataTree
@@ -60,10 +61,9 @@ def _chance(collected: Collected, measured: Measured) -> Array:
 # --- sound
 
 
-def _no_passage(case: AnyCase) -> str:
+def _no_passage(case: Any) -> str:
     if lacks := no_track(case):
         return lacks
-    assert isinstance(case, Case)
     return "" if case.passage.passed is not None else "no pass-by time: noise.vehicle_length is not given"
 
 
@@ -85,10 +85,9 @@ def _no_rolling(case: AnyCase) -> str:
     return "" if isinstance(case, Case) else f"no bodies that roll: it is of kind {case.kind}"
 
 
-def _no_sensors(case: AnyCase) -> str:
+def _no_sensors(case: Any) -> str:
     if lacks := _no_rolling(case):
         return lacks
-    assert isinstance(case, Case)
     sensed = case.rolled_over.sensor_positions and keys_of_track(case) is None
     return "" if sensed else "no accelerometers on what is rolled over"
 

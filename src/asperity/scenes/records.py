@@ -43,7 +43,7 @@ class RecordedRuns:
     @cached_property
     def frequency(self) -> Array:
         """All lines (f,), from zero, Hz."""
-        return np.asarray(np.fft.rfftfreq(self.segment, self.case.recorded_step), dtype=np.float64)
+        return np.fft.rfftfreq(self.segment, self.case.recorded_step)
 
     @cached_property
     def shown(self) -> NDArray[np.bool_]:
