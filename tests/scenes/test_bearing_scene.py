@@ -16,9 +16,8 @@ from asperity.case.cases import as_case
 from asperity.errors import CaseError, ComputationError, InputError, OutOfRangeWarning, percent
 from asperity.parameters import Number, key
 from asperity.reference.materials import MATERIALS
-from asperity.running import prepare_case
-from asperity.scenarios import compiling, raceway_laws, roller_raceways, run_time, scanned_states
-from asperity.scenarios.prepared_bearing import CELL_TIME, expected, prepare_bearing
+from asperity.scenarios import raceway_laws, roller_raceways, scanned_states
+from asperity.scenarios.prepared_bearing import prepare_bearing
 from asperity.scenes import computed_bearing
 from asperity.scenes.bearing_heard import heard_group
 from asperity.scenes.bearing_validity import out_of_place
@@ -449,49 +448,6 @@ def test_no_force_is_written_below_zero_where_a_ball_leaves_the_ring(runs):
     found = group(runs(BEARING), "rolling")
     assert found["inner_force"].values.min() == 0.0
     assert found["outer_force"].values.min() > 0.0  # centrifugal force keeps balls on it
-
-
-def test_the_time_told_counts_the_contacts_that_are_solved_over_faults(monkeypatch):
-    """By the law and with the fault alone, in every position at which the window holds something of it."""
-    solved, gap_over = [], raceway_laws.OnRaceway._over
-
-    def counted(self, at):
-        solved.append(self.shape.body.size)
-        return gap_over(self, at)
-
-    monkeypatch.setattr(raceway_laws.OnRaceway, "_over", counted)
-    case = as_case(BEARING | {"duration": "60 ms"})
-    ready = prepare_case(case)
-    _, work = expected(ready)
-    assert not solved
-    asperity.run(ready)
-    assert len(solved) > 100
-    told = work.time.parts["contacts over the faults"] / (CELL_TIME * run_time.pace())
-    assert 0.95 * sum(solved) < told <= (1 + 1e-9) * sum(solved)  # a few more hold what areal takes them for
-    _, work = expected(prepare_case(case.with_(fault=None)))
-    assert work.time.parts["contacts over the faults"] == 0.0
-
-
-def test_a_plan_says_how_cells_at_rims_count_and_compiles_both_kinds(monkeypatch):
-    """On the damaged raceway they are whole; laws that do not see heights have no others."""
-    monkeypatch.setattr(compiling, "is_kept", lambda kernel: kernel == compiling.ROLLING)
-    case = as_case(BEARING | {"laws": ["table"]})
-    rows, work = expected(prepare_case(case))
-    told = [text for name, text in rows if name == "cells at rims"]
-    assert told == ["covered on the inner raceway", "whole on the outer raceway"]
-    rows, blind = expected(prepare_case(case.with_(laws=["hertz"])))
-    assert "cells at rims" not in dict(rows)
-    longer = work.compiling - blind.compiling
-    assert longer == pytest.approx(run_time.pace() * compiling.CELLS_TIME["covered"])
-
-
-def test_what_is_told_of_a_law_that_solves_every_step_is_at_most_all_balls_on_both_rings():
-    """On the inner ring as many as carry at any angle of the cage, on the outer one all of them."""
-    case = as_case(BEARING | {"laws": ["direct"], "duration": "60 ms"})
-    touching = case.static.touching
-    assert touching.min() < touching.max() < BALLS
-    _, work = expected(prepare_case(case))
-    assert work.solutions == {"direct": work.steps * (int(touching.max()) + BALLS)}
 
 
 @pytest.mark.parametrize(
