@@ -3,8 +3,10 @@
 import os
 import subprocess
 import sys
+from contextlib import contextmanager
 
 import numpy as np
+import pytest
 from click.testing import CliRunner
 
 from asperity.cli import main
@@ -24,6 +26,15 @@ RAIL = 'kind = "wheel-on-rail"\nduration = "0.2 s"\nsettling = "0.1 s"\n[surface
 RAIL += '[contact]\nsamples = 2\n[wheel]\nsection = "rigid"\n'
 PROGRAM = "from asperity.__main__ import start; start()"
 NOISE = np.random.default_rng(0)
+
+
+@contextmanager
+def working_in(folder):
+    """Work in a folder, with a cache of its own."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        patch.setenv("ASPERITY_CACHE", str(folder / "cache"))
+        yield folder
 
 
 def call(*words, code=0):

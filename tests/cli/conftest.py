@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from command_line import CASE, SMALL, program
+from command_line import CASE, SMALL, program, working_in
 
 
 @pytest.fixture(autouse=True)
@@ -23,10 +23,7 @@ def own_folder(tmp_path, monkeypatch):
 @pytest.fixture(scope="session")
 def ran(tmp_path_factory):
     """Folder of a small run with its report, what was said, and what was imported for it."""
-    folder = tmp_path_factory.mktemp("ran")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.chdir(folder)
-        patch.setenv("ASPERITY_CACHE", str(folder / "cache"))
+    with working_in(tmp_path_factory.mktemp("ran")) as folder:
         Path("small.toml").write_text(SMALL)
         script = "import sys\nfrom asperity.cli import main\nmain(standalone_mode=False)\nprint(*sys.modules)"
         done = program("run", "small.toml", "-o", "out", script=script)

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from command_line import CASE, RAIL, SMALL, call, words_of
+from command_line import CASE, RAIL, SMALL, call, words_of, working_in
 
 LINE = 'line = "line.npy"\nline_unit = "nm"\nline_spacing = "8 um"'
 BALL = '[ball]\nload = "60 N"\n'
@@ -73,10 +73,8 @@ ENCODED = {
 @pytest.fixture(scope="module", autouse=True)
 def own_folder(tmp_path_factory):
     """One folder for all: nothing is left in it."""
-    folder, rng = tmp_path_factory.mktemp("refused"), np.random.default_rng(0)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.chdir(folder)
-        patch.setenv("ASPERITY_CACHE", str(folder / "cache"))
+    rng = np.random.default_rng(0)
+    with working_in(tmp_path_factory.mktemp("refused")) as folder:
         for name, text in (CASES | {"case": CASE, "small": SMALL, "rail": RAIL}).items():
             Path(f"{name}.toml").write_text(text)
         for name, content in ENCODED.items():

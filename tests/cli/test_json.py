@@ -11,7 +11,7 @@ import pytest
 from asperity.cli.commands import FORMAT
 from asperity.results import read_result
 from asperity.terminal import json_ready
-from command_line import SMALL, call
+from command_line import SMALL, call, working_in
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "reference" / "json.md"
 
@@ -19,10 +19,7 @@ DOCUMENT = Path(__file__).parents[2] / "docs" / "reference" / "json.md"
 @pytest.fixture(autouse=True, scope="module")
 def own_folder(tmp_path_factory, ran):
     """One for all, with a run."""
-    with pytest.MonkeyPatch.context() as patch:
-        folder = tmp_path_factory.mktemp("json")
-        patch.chdir(folder)
-        patch.setenv("ASPERITY_CACHE", str(folder / "cache"))
+    with working_in(tmp_path_factory.mktemp("json")) as folder:
         Path("small.toml").write_text(SMALL)
         np.save("map.npy", np.random.default_rng(0).normal(size=(48, 40)))
         shutil.copytree(ran.folder, "a")

@@ -16,7 +16,7 @@ import xarray as xr
 import asperity
 from asperity.cli.studying import defined
 from asperity.studies.definition import load_study, study_of
-from command_line import RAIL, SMALL, call, words_of
+from command_line import RAIL, SMALL, call, words_of, working_in
 from small_cases import changed
 
 pytestmark = pytest.mark.usefixtures("members_in_this_process")
@@ -37,10 +37,7 @@ PEAK = "peak_force [N]"
 @pytest.fixture(scope="module")
 def computed(tmp_path_factory):
     """Folder of a study of sixteen members of which eight fail, and what was said."""
-    folder = tmp_path_factory.mktemp("study")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.chdir(folder)
-        patch.setenv("ASPERITY_CACHE", str(folder / "cache"))
+    with working_in(tmp_path_factory.mktemp("study")) as folder:
         Path("filtered.toml").write_text(FILTERED)
         Path("study.toml").write_text(STUDY)
         outcome = call(*AGAIN)
