@@ -7,28 +7,34 @@ from typing import Literal
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, positive, require
+from asperity.arguments import ArrayLike, positive, require
 from asperity.diagnostics.confidence import Basis
 from asperity.diagnostics.envelopes import above_frequency
-from asperity.diagnostics.hypotheses import FINE, NEAR, RANGE, BearingRecord, Hypothesis, Tone, deepest_comb
+from asperity.diagnostics.hypotheses import (
+    NEAR,
+    RANGE,
+    BearingRecord,
+    Hypothesis,
+    Tone,
+    deepest_comb,
+)
 from asperity.diagnostics.kurtogram import Kurtogram, kurtogram
 from asperity.diagnostics.prominence import HARMONICS, LOWEST_PLACE
 from asperity.diagnostics.recording import MOST_SAMPLES, Recording, SignalPieces
+from asperity.diagnostics.shaft import (
+    APART,
+    MAINS,
+    SUPPORTED,
+    at_speed,
+    has_own_lines,
+    near_speed,
+    of_shaft_or_mains,
+    once_in_a_turn,
+    shaft_near,
+)
 from asperity.progress import Progress, counted
 from asperity.written_numbers import rounded
 
-SUPPORTED = 15.0
-"""Support from which on the shaft is believed to be where it is sought: of a wrong speed one in ten has
-it."""
-APART = 0.06
-"""Share about the speed given within which its lines are sought: one that is 3 % off is told where it is."""
-ODD = 8.0
-"""Support that the odd multiples of a speed alone must have: half of the true one has none, and lines between
-the multiples that have it are those of a slower shaft."""
-TIMES = (2, 3)
-"""Multiples and parts of a speed that are taken for another one by their own lines."""
-SHARES = (1.0 / 3.0, 0.5, 2.0 / 3.0, 0.75, 4.0 / 3.0, 1.5)
-"""Speeds that have half of the lines of a speed, a third or a quarter: over that speed."""
 TOLD = 15.0
 """Score that the speed given is worth: what is told is more often right than not."""
 AHEAD, AHEAD_OF_SHAFT = 10.0, 25.0
@@ -36,8 +42,6 @@ AHEAD, AHEAD_OF_SHAFT = 10.0, 25.0
 at the speed given, another shaft may be near, and more is asked."""
 HUM = 400.0
 """Frequency up to which lines of the mains and of motors are, Hz."""
-MAINS = (50.0, 60.0, 100.0, 120.0)
-"""Hz, at which motors and inverters hum."""
 RESOLVED = 2.0 * LOWEST_PLACE
 """Turns of a record from which on it holds the line of the shaft, and side bands at its speed apart from
 what they stand beside."""
@@ -58,6 +62,7 @@ ALIKE = 8.0
 AROUND_LINES = 2.5
 """Of the highest line that is sought, up to which others are looked at, by which it is told how far it stands
 out."""
+
 
 Speed = Literal["confirmed", "unconfirmed", "contradicted"]
 NAMES = {"outer": "outer ring", "inner": "inner ring", "ball": "ball"}
@@ -97,6 +102,8 @@ class Diagnosis:
         What the lines of the parts are as well, of a shaft at another speed.
     tones_alone : tuple of float
         Frequencies, Hz, of a record that holds tones alone, against which no line stands out; none of others.
+    once_in_a_turn : bool
+        Whether there are deep blows of the shaft itself, as of a rub, which may hide those of parts.
     basis : Basis
         What this rests on.
     resolution : float
@@ -128,6 +135,7 @@ class Diagnosis:
     element: str = "ball"
     otherwise: Hypothesis | None = None
     tones_alone: tuple[float, ...] = ()
+    once_in_a_turn: bool = False
 
     def name(self, part: str) -> str:
         """A part, as people say it."""
@@ -141,8 +149,10 @@ class Diagnosis:
     @property
     def confidence(self) -> float:
         """That this is so, 0 to 1: no more than even where the lines fit another speed better, of tones
-        alone, and at a speed beyond belief, as no such record is among those that it is calibrated on."""
+        alone, of a part that a rub may hide, and at a speed beyond belief, as no such record is among those
+        that it is calibrated on."""
         doubted = self.beyond_belief or self.otherwise is not None or bool(self.tones_alone)
+        doubted = doubted or (self.once_in_a_turn and not self.parts)
         return min(self.basis.confidence, EVEN) if doubted else self.basis.confidence
 
     @property
@@ -329,12 +339,13 @@ def decided(
         _agrees(each, told, resolution) for each in (shaft, record.speed(shaft))
     )
     there = seen and not others
-    struck = [each for each in struck if not _of_shaft_or_mains(each, told, resolution, seen)]
+    others_own = [each for each in struck if of_shaft_or_mains(record, each, told, resolution, seen)]
+    struck = [each for each in struck if each not in others_own]
     seen_at = record.speed(shaft)
     turns = record.duration * told
     bare = Diagnosis(
         told=told,
-        speed=seen_at if there and _at(seen_at, told) else told,
+        speed=seen_at if there and at_speed(seen_at, told) else told,
         speed_is=CONFIRMED if there else UNCONFIRMED,
         parts=(),
         alike=(),
@@ -342,22 +353,24 @@ def decided(
         blows=0.0,
         others=others if seen else (),
         basis=Basis("sound" if seen else "nothing", turns),
+        once_in_a_turn=any(once_in_a_turn(record, each, told, resolution) for each in others_own),
         resolution=resolution,
         record=record,
     )
     if not struck:
-        return replace(bare, faint=next((each for each in ranked if _near(each, told)), None))
+        return replace(bare, faint=next((each for each in ranked if near_speed(each, told)), None))
     best = struck[0]
     rivals = [each for each in struck if not _same(each, struck[0])]
     margin = _worth(best, told) - max((_worth(each, told) for each in rivals), default=0.0)
-    if _near(best, told):
+    if near_speed(best, told):
         return _of_parts(bare, best, rivals, tones, margin)
-    ahead = AHEAD_OF_SHAFT if there and not _multiple(best.speed / told) else AHEAD
-    here = [each for each in struck if _near(each, told) and abs(each.tone - best.tone) <= resolution]
+    heard = there and not _multiple(best.speed / told)
+    ahead = AHEAD_OF_SHAFT if heard or best.every > 1 else AHEAD  # a comb of the spin is one more that fits
+    here = [each for each in struck if near_speed(each, told) and abs(each.tone - best.tone) <= resolution]
     unresolved = [each for each in here if each.part == best.part]
     if unresolved and _agrees(best.speed, told, resolution):
         return _of_parts(bare, unresolved[0], rivals, tones, 0.0)
-    if best.support >= SUPPORTED and margin >= ahead:
+    if best.support >= SUPPORTED and margin >= ahead and has_own_lines(record, best, tones):
         basis = Basis("elsewhere", turns, margin, best.support, best.depth)
         elsewhere = replace(bare, speed=record.speed(best.speed), speed_is=CONTRADICTED, basis=basis)
         return replace(elsewhere, parts=(best,), blows=best.blows)
@@ -365,7 +378,7 @@ def decided(
         return _of_parts(bare, here[0], [each for each in struck if not _same(each, here[0])], tones, 0.0)
     if abs(best.tone - round(best.tone / told) * told) <= resolution:  # blows of the shaft, as of a coupling
         return bare
-    faint = [each for each in ranked if _near(each, told) and abs(each.tone - best.tone) <= resolution]
+    faint = [each for each in ranked if near_speed(each, told) and abs(each.tone - best.tone) <= resolution]
     if faint:
         return replace(bare, faint=faint[0])
     return replace(bare, blows=best.tone, basis=Basis("blows", turns))
@@ -377,9 +390,9 @@ def _of_parts(
     """What is said where a part is struck at the speed given."""
     told, resolution = bare.told, bare.resolution
     better = [each for each in rivals if each.support >= SUPPORTED and each.score > best.score]
-    otherwise = next((each for each in better if not _near(each, told)), None)
+    otherwise = next((each for each in better if not near_speed(each, told)), None)
     there = otherwise is None and (bare.speed_is == CONFIRMED or best.support >= SUPPORTED)
-    near = [each for each in rivals if _near(each, told)]
+    near = [each for each in rivals if near_speed(each, told)]
     close = [each for each in near if abs(each.tone - best.tone) <= 2.0 * resolution]
     alike = {each.part: each for each in close if _worth(each, told) >= _worth(best, told) - ALIKE}
     seconds = () if alike else tuple(_seconds(near, best, tones, resolution))
@@ -391,38 +404,16 @@ def _of_parts(
     if not there:
         return replace(found, speed=told, speed_is=UNCONFIRMED, otherwise=otherwise)
     speed = bare.record.speed(best.speed)
-    if _at(speed, told):
+    if at_speed(speed, told):
         return replace(found, speed=speed, speed_is=CONFIRMED)
     if _agrees(speed, told, resolution):
         return replace(found, speed=told, speed_is=CONFIRMED)
     return replace(found, speed=speed, speed_is=CONTRADICTED)
 
 
-def _of_shaft_or_mains(each: Hypothesis, told: float, resolution: float, seen: bool) -> bool:
-    """Whether blows are those of a shaft with the speed given, as of a coupling or a fan, or of the mains.
-
-    Multiples of its speed are the shaft's where its lines are seen.
-    """
-    if _near(each, told):
-        return False
-    if abs(each.tone - told) <= resolution:
-        return each.support < SUPPORTED
-    lines = (round(each.tone / told) * told, *MAINS) if seen else MAINS
-    return min(abs(each.tone - line) for line in lines) <= 0.5 * resolution
-
-
 def _worth(each: Hypothesis, told: float) -> float:
     """Score of a hypothesis, that of the speed given the more."""
-    return each.score + (TOLD if _near(each, told) else 0.0)
-
-
-def _near(each: Hypothesis, told: float) -> bool:
-    return _at(each.speed, told)
-
-
-def _at(speed: float, told: float) -> bool:
-    """Whether a speed is the one given, but for what speeds are rounded by."""
-    return abs(speed / told - 1.0) <= NEAR + 2 * FINE
+    return each.score + (TOLD if near_speed(each, told) else 0.0)
 
 
 def _agrees(speed: float, told: float, resolution: float) -> bool:
@@ -430,7 +421,7 @@ def _agrees(speed: float, told: float, resolution: float) -> bool:
 
     Lines lie on places half a resolution apart, up to rounding.
     """
-    return _at(speed, told) or abs(speed - told) <= 0.5001 * resolution
+    return at_speed(speed, told) or abs(speed - told) <= 0.5001 * resolution
 
 
 def _multiple(ratio: float) -> bool:
@@ -491,29 +482,3 @@ def _of_shaft(each: Hypothesis, best: Hypothesis, tones: Mapping[str, Tone], res
     turns = np.arange(-2, 3)[:, None] * best.speed
     made = np.arange(1, HARMONICS + 1) * best.tone + turns
     return bool((np.abs(made - each.tone) <= 2.0 * resolution).any())
-
-
-def shaft_near(
-    record: BearingRecord, tones: Mapping[str, Tone], told: float, deepest: float = 0.0
-) -> tuple[float, float, tuple[float, ...]]:
-    """Where near a speed lines of the shaft are clearest, Hz, how clear, and which other speeds, Hz, have
-    them as well: those whose lines are clearer, or of which these are a part's; a multiple that leaves few of
-    them, and a part of it where there are lines between."""
-
-    def support(speeds: Array, but: int = 0) -> Array:
-        return record.supports(speeds, deepest=deepest, but=but)
-
-    speeds = told * np.exp(np.arange(-APART, APART, FINE))
-    clear = support(speeds)
-    at = int(clear.argmax())
-    here = float(speeds[at])
-    near = np.linspace(1.0 - NEAR / 4.0, 1.0 + NEAR / 4.0, 1 + round(NEAR / 2.0 / FINE)) * here
-    spans = [share * near for share in SHARES]
-    spans += [here / np.arange(part.lowest, part.highest, FINE * part.order) for part in tones.values()]
-    others = [float(span[span.size // 2]) for span in spans if support(span).max() > clear[at]]
-    for times in TIMES:
-        own = support(near, times).max()
-        clearer = support(times * near).max() > clear[at]
-        others += [times * here] * bool(own < (SUPPORTED if clearer else ODD))
-        others += [here / times] * bool(support(np.array([here / times]), times)[0] >= ODD)
-    return here, float(clear[at]), tuple(sorted(set(others)))

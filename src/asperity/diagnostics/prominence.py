@@ -155,12 +155,12 @@ class Prominence:
         return float((weight * order * place).sum() / (weight * order**2).sum() * self.step)
 
     def true_fundamental(self, fundamental: float, shaft: float = 0.0) -> float:
-        """Half or a third of a fundamental where lines as high lie between those of its comb.
+        """Half, a third, a fifth or a seventh of a fundamental where lines as high lie between its own.
 
         Those of a shaft that turns so often, Hz, and side bands at its speed say nothing of that.
         """
         own = np.log(self.lines_of(fundamental)[1] + 1e-300).mean()
-        for share in (2, 3):
+        for share in (2, 3, 5, 7):
             if fundamental / share < LOWEST_PLACE * self.step:
                 break
             between = np.array([n for n in range(1, 2 * share) if n % share]) * fundamental / share

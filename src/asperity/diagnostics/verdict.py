@@ -8,6 +8,7 @@ from asperity.diagnostics.hypotheses import Hypothesis
 from asperity.written_numbers import rounded
 
 ASKED = "is the speed or the sampling rate wrong?"
+ONCE_IN_A_TURN = "Blows come with the turns of the shaft, as of a rub; fainter ones may hide behind them."
 OF_BALLS = "How sure rests on records of ball bearings."
 BEYOND = "Hardly any bearing of this size turns at {}, as told: is the speed in 1/min?"
 
@@ -148,4 +149,5 @@ def _of_parts(found: Diagnosis) -> str:
         )
     condition = "" if found.speed_is == "confirmed" or found.others else " if it is right"
     parts = f"rings or {found.element}s"
-    return f"No lines of {parts} stand out: no sign of a fault{condition}, {sure}."
+    hidden = f"{ONCE_IN_A_TURN} " if found.once_in_a_turn else ""
+    return f"{hidden}No lines of {parts} stand out: no sign of a fault{condition}, {sure}."
