@@ -150,3 +150,11 @@ def test_a_groove_wears_least_where_balls_roll_purely_and_stick():
     at = found.across[1] / half
     assert deepest[np.abs(np.abs(at) - 0.4) < 0.1].min() < 0.1 * deepest.max()
     assert deepest[np.abs(at) > 0.6].max() == deepest.max()
+
+
+def test_what_sticks_all_over_wears_nothing():
+    """Friction without end holds all of each contact, however its groove bends."""
+    loaded = B6205.loaded(300.0)
+    found = raceway_wear(loaded, B6205.kinematics(SPEED), COEFFICIENT, Friction(1e6))
+    assert not found.depth.any()
+    assert not found.volume.any()
