@@ -103,6 +103,25 @@ def test_the_area_is_of_second_order(slender):
     assert np.all(np.array(most) < 0.1 / np.square(cells))
 
 
+def test_real_areas_on_whole_cells_are_less_what_stands_out_beyond_rims():
+    """Balls by Hertz, a rough ball by covered cells a quarter as large; to covered cells nothing is done."""
+    counted, real = [], []
+    for offset in OFFSETS:
+        half_space, gap = ball_on_cells(9, offset, cells="whole")
+        contacts = [half_space.solve(gap, approach=d) for d in np.linspace(0.85, 1.15, 12)]
+        counted += [c.area / (math.pi * c.approach) - 1.0 for c in contacts]
+        real += [c.real_area / (math.pi * c.approach) - 1.0 for c in contacts]
+    assert np.mean(counted) > 0.02
+    assert abs(np.mean(real)) < 0.01
+    assert np.std(real) < 0.017
+    fine = rough((96, 96), 0.025, 0.03)
+    middles = np.ascontiguousarray(fine.reshape(24, 4, 24, 4)[:, 1:3, :, 1:3].mean(axis=(1, 3)))
+    exact = HalfSpace(fine.shape, 0.025, 1.0, cells="covered").solve(fine, approach=0.3)
+    whole = HalfSpace(middles.shape, 0.1, 1.0).solve(middles, approach=0.3)
+    assert exact.real_area == exact.area
+    assert abs(whole.real_area / exact.area - 1.0) < 0.3 * (whole.area / exact.area - 1.0)
+
+
 def test_forces_and_stiffness_of_rough_balls_are_nearer_to_fine_cells_than_on_whole_ones():
     """Waves of 5 to 20 cells, 0.1 approaches rms: on means the force is too small, on middles too large."""
     across, parts, approaches = 9, 5, np.linspace(0.85, 1.15, 5)

@@ -12,6 +12,7 @@ from asperity.laws.layout import force
 from asperity.scenarios.raceway_grids import FOLLOWED, raceway_on
 from asperity.scenarios.raceway_laws import OnRaceway, raceway_laws
 from asperity.scenarios.roller_raceways import felt_by
+from asperity.surfaces.cell_means import pressed_heights
 from asperity.surfaces.faults import Fault
 from asperity.surfaces.raceway import AroundTexture
 
@@ -96,6 +97,15 @@ def test_cells_are_whole_where_surfaces_are_rough_or_have_faults():
     assert cells(rough(20 * NM, radius=1.0 * MM)) == "whole"
     assert cells(smooth, raceway_on(CONTACT, LOAD, 0.7 * MM, faults=(pit,))) == "whole"
     assert cells(smooth, replace(smooth, heights=20.0 * smooth.heights)) == "whole"
+
+
+def test_heights_are_pressed_as_means_across_the_end_of_a_turn():
+    surface = rough(20 * NM)
+    heights, n = surface.heights, len(surface.heights)
+    found = OnRaceway(CONTACT, surface, LOAD).pressed(heights, 3)
+    turns = np.vstack([heights] * 3)
+    assert_allclose(found, pressed_heights(turns)[n - 3 : 2 * n + 3], atol=1e-15)
+    assert np.std(found - turns[n - 3 : 2 * n + 3]) > 1e-3 * np.std(heights)
 
 
 def test_positions_on_smooth_raceways_have_the_levels_of_every_row():

@@ -1,5 +1,6 @@
 """A contact of a half-space, solved: pressure and force, and what follows from them."""
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -13,6 +14,10 @@ from asperity.units import written
 if TYPE_CHECKING:
     from asperity.contact.halfspace import HalfSpace
     from asperity.surfaces.edges import Edges
+
+BEYOND_RIM = (math.pi - 1.0 + math.log(2.0)) / 24.0
+"""Of a cell, for each of its sides at a rim: V. A. Yastrebov, G. Anciaux, J.-F. Molinari, Tribol. Int. 114
+(2017) 161."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,6 +80,20 @@ class Contact:
             f"<Contact: {force} at an approach of {approach}, pressure up to {pressure} "
             f"on {cells} ({self.area * 1e6:.4g} mm²), {solved}>"
         )
+
+    @property
+    def real_area(self) -> float:
+        """Area of contact, m²: of whole cells less what they stand out beyond rims on average.
+
+        That is `BEYOND_RIM` of a cell for each side between one in contact and one that is not.
+        """
+        space = self.half_space
+        if space.cells != "whole" or self.edges is not None:
+            return self.area
+        beyond = 0 if space.boundary == "periodic" else 1  # cells that touch nothing
+        touching = np.pad(self.pressure > 0.0, beyond)
+        sides = sum(np.count_nonzero(touching != np.roll(touching, 1, axis)) for axis in (0, 1))
+        return self.area - BEYOND_RIM * sides * space.cell_area
 
     @property
     def converged(self) -> bool:

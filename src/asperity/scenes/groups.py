@@ -210,7 +210,7 @@ def _reduced(computed: Computed, reduction: Reduction) -> Values:
         contact.DATUM_PATH: reduction.datums["path"],
         contact.WORKING_APPROACH: reduction.pressed.approach,
         contact.WORKING_STIFFNESS: float(curve.stiffness(curve.inverse(shape.load))),
-        contact.CONTACT_AREA: working.area,
+        contact.CONTACT_AREA: working.real_area,
         contact.CONTACT_AREA_RATIO: reduction.pressed.area_ratio,
         contact.ISOLATED_SHARE: reduction.pressed.isolated_share,
         contact.RIM_CELLS: computed.rim_cells,
