@@ -324,6 +324,31 @@ def test_decay_rates_of_both_rails_are_as_long_as_their_mean(tmp_path):
         measured.read_decay_rates(tmp_path / "c.csv")
 
 
+@pytest.mark.parametrize("rails", ["left (dB/m), right (dB/m)", "links (dB/m); rechts (dB/m)"])
+def test_columns_of_both_rails_are_no_lateral_rates(rails, tmp_path):
+    """Named by the rails alone the second is not read as another direction; named lateral it is."""
+    apart = ";" if ";" in rails else ","
+    lines = ("100", "2", "6"), ("125", "4", "4"), ("160", "1", "3")
+    rows = "".join(f"{apart.join(each)}\n" for each in lines)
+    (tmp_path / "a.csv").write_text(f"f (Hz){apart}{rails}\n{rows}")
+    _, vertical, lateral = measured.read_decay_rates(tmp_path / "a.csv")
+    np.testing.assert_allclose(vertical, [3.0, 4.0, 1.5])
+    assert lateral is None
+    sideways = rails.replace("right", "lateral right").replace("rechts", "lateral rechts")
+    (tmp_path / "b.csv").write_text(f"f (Hz){apart}{sideways}\n{rows}")
+    assert measured.read_decay_rates(tmp_path / "b.csv")[2].tolist() == [6.0, 4.0, 3.0]
+
+
+def test_a_mobility_in_decibels_is_asked_for_as_a_value(tmp_path):
+    (tmp_path / "y.csv").write_text("f (Hz), mobility (dB re 1e-6 m/s/N)\n100, 10\n200, 11\n400, 12\n")
+    with pytest.raises(InputError, match=r"its reference times 10\^\(L/20\)"):
+        measured.read_mobility(tmp_path / "y.csv")
+    (tmp_path / "y.csv").write_text("f (Hz), mobility (kg)\n100, 10\n200, 11\n400, 12\n")
+    with pytest.raises(InputError, match="kg") as told:
+        measured.read_mobility(tmp_path / "y.csv")
+    assert "10^(L/20)" not in str(told.value)
+
+
 OMEGA = 2.0 * np.pi * np.array([100.0, 200.0, 400.0])
 TRUE = np.array([2e-5 + 1e-5j, 1e-5 - 2e-5j, 3e-5 + 0j])
 
@@ -338,6 +363,11 @@ def test_a_mobility_is_read_in_its_three_forms(unit, numbers, tmp_path):
     text = "".join(f"{f}; {y.real:.12g}; {y.imag:.12g}\n" for f, y in rows)
     (tmp_path / "y.csv").write_text(f"f (Hz); real [{unit}]; imaginary [{unit}]\n{text}", encoding="utf-8")
     np.testing.assert_allclose(measured.read_mobility(tmp_path / "y.csv")[1], TRUE, rtol=1e-9)
+    for phase, turn in (("deg", 180.0 / np.pi), ("rad", 1.0)):
+        rows = zip((100, 200, 400), np.abs(numbers), turn * np.angle(numbers), strict=True)
+        text = "".join(f"{f}; {size:.12g}; {angle:.12g}\n" for f, size, angle in rows)
+        (tmp_path / "y.csv").write_text(f"f (Hz); size [{unit}]; phase ({phase})\n{text}", encoding="utf-8")
+        np.testing.assert_allclose(measured.read_mobility(tmp_path / "y.csv")[1], TRUE, rtol=1e-9)
     rows = zip((100, 200, 400), np.abs(numbers), strict=True)
     text = f"f (Hz)\tsize [{unit}]\n" + "".join(f"{f}\t{size:.12g}\n" for f, size in rows)
     (tmp_path / "size.txt").write_text(text, encoding="utf-8")

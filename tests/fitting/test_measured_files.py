@@ -102,6 +102,16 @@ def test_columns_choose_lines(track, file):
     assert conditions == pytest.approx([120 / 3.6, 25.0])
 
 
+def test_each_rail_of_a_table_is_a_repeat(track, tmp_path):
+    """Their difference is the scatter, whether their columns say the direction or the rails alone."""
+    for heading in ("left (dB/m), right (dB/m)", "vertical left (dB/m), vertical right (dB/m)"):
+        (tmp_path / "rates.csv").write_text(f"f (Hz), {heading}\n100, 4, 9\n125, 4, 4\n160, 9, 4\n")
+        (found,) = measured_for(track, tmp_path / "rates.csv", {}, None)
+        assert (found.what, found.records) == ("vertical decay rate", 2)
+        np.testing.assert_allclose(found.values, [6.0, 4.0, 6.0])
+        assert found.uncertainty is not None
+
+
 def test_a_line_is_a_frequency(track, file):
     both = "frequency (Hz), vertical (dB/m), lateral (dB/m)\n100, 5, 7\n125, 6, 8\n160, 6, 9\n"
     found = measured_for(track, file(both, "track.csv"), {}, None)

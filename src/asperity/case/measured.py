@@ -19,6 +19,8 @@ BAND_SHIFT = 0.06
 """By how much, in bands, a nominal centre may be off the exact one: 1.6 is by 0.041."""
 DECAY_RATES = (0.01, 200.0)
 """dB/m: half a kilometre of rail moves as one, or less than one of a length shorter than its section."""
+RAILS = ("left", "right"), ("links", "rechts"), ("gauche", "droite")
+"""Words by which headings tell the rails apart."""
 MOBILITIES = (1e-9, 0.1)
 """(m/s)/N: rails lie between 1e-7 and 1e-3."""
 
@@ -33,6 +35,7 @@ SOUND_LEVELS = (-20.0, 180.0)
 
 _FREQUENCY = Column("frequency", "Hz")
 _VERTICAL, _LATERAL = Column("vertical decay rate", "dB/m"), Column("lateral decay rate", "dB/m")
+_PHASE = Column("phase", "rad")
 FORMS = {"m/s/N": 0, "m/s^2/N": -1, "m/N": 1}
 """Units of mobility, accelerance and receptance; the power of iω that makes a mobility of each."""
 
@@ -58,12 +61,18 @@ def read_decay_rates(table: TableSource) -> tuple[Array, Array, Array | None]:
     vertical ones and, if it has them, two lateral ones. Of these 1/Δ is the mean of both, as the sound of two
     rails is. First come the exact centres (n,), Hz.
     """
+    centres, rates = read_rails(table)
+    of_both = 1.0 / np.mean(1.0 / rates, axis=2)
+    return centres, of_both[:, 0], of_both[:, 1] if of_both.shape[1] > 1 else None
+
+
+def read_rails(table: TableSource) -> tuple[Array, Array]:
+    """Exact centres (n,), Hz, and the rates of such a table by direction and rail (n, directions, rails)."""
     rows, rails = _of_rails(table)
     rates = rows[:, 1:]
     _refuse_beyond(table, rates, DECAY_RATES, "a decay rate", "dB/m")
     numbers = band_numbers(table, rows[:, 0])
-    of_both = 1.0 / np.mean(1.0 / rates.reshape(len(rates), -1, rails), axis=2)
-    return 10.0 ** (0.1 * numbers), of_both[:, 0], of_both[:, 1] if of_both.shape[1] > 1 else None
+    return 10.0 ** (0.1 * numbers), rates.reshape(len(rates), -1, rails)
 
 
 def _of_rails(table: TableSource) -> tuple[Array, int]:
@@ -79,7 +88,13 @@ def _of_rails(table: TableSource) -> tuple[Array, int]:
         if rows.shape[1] == len(both) and isinstance(table, Path) and tells(table, "lateral"):
             raise
         return rows, 2
-    return rows, 2 if rows.shape[1] == len(both) + 2 else 1
+    two = rows.shape[1] == len(both) and isinstance(table, Path) and _names_rails(table)
+    return rows, 2 if two or rows.shape[1] == len(both) + 2 else 1
+
+
+def _names_rails(table: Path) -> bool:
+    """Whether the columns of a table are those of two rails in one direction: none of them is lateral."""
+    return not tells(table, "lateral") and any(all(tells(table, each) for each in pair) for pair in RAILS)
 
 
 def read_mobility(
@@ -87,14 +102,21 @@ def read_mobility(
 ) -> tuple[Array, NDArray[np.inexact]]:
     """Read a point mobility (n,), (m/s)/N, over rising frequencies (n,), Hz: complex, or its magnitude.
 
-    A table of frequency and magnitude, or real and imaginary part, e^{+iωt}; the unit in a file says whether
-    it holds mobility, accelerance or receptance.
+    A table of frequency and magnitude, magnitude and phase, or real and imaginary part, e^{+iωt}; the unit in
+    a file says whether it holds mobility, accelerance or receptance.
     """
-    rows, unit = in_some_unit(table, FORMS, (_FREQUENCY,), ("magnitude or real part",), ("imaginary part",))
+    turned = isinstance(table, Path) and tells(table, "phase")
+    if turned:
+        rows, unit = in_some_unit(table, FORMS, (_FREQUENCY,), ("magnitude",), behind=(_PHASE,))
+    else:
+        rows, unit = in_some_unit(
+            table, FORMS, (_FREQUENCY,), ("magnitude or real part",), ("imaginary part",)
+        )
     frequency = rows[:, 0]
     refuse_disorder(table, frequency)
     whole = rows.shape[1] == 3  # with its phase
-    found, turn = (rows[:, 1] + 1j * rows[:, 2], 1j) if whole else (rows[:, 1], 1.0)
+    response = rows[:, 1] * np.exp(1j * rows[:, 2]) if turned else rows[:, 1] + 1j * rows[:, -1]
+    found, turn = (response, 1j) if whole else (rows[:, 1], 1.0)
     mobility = found * (turn * 2.0 * np.pi * frequency) ** FORMS[unit]
     size = np.asarray(np.abs(mobility) if whole else mobility.real)
     _refuse_beyond(table, size, within, "a mobility", "(m/s)/N")
@@ -136,10 +158,11 @@ def in_some_unit(
     columns: tuple[Column, ...],
     names: tuple[str, ...],
     further: tuple[str, ...] = (),
+    behind: tuple[Column, ...] = (),
 ) -> tuple[Array, str]:
     """Rows of a table, and the first of some units in which those of its columns are that have names here.
 
-    They stand behind its other columns; all lines may have `further` ones.
+    They stand behind its other columns, and before those `behind`; all lines may have `further` ones.
     """
     errors = []
     tried = list(units)
@@ -147,9 +170,12 @@ def in_some_unit(
         reference = PRESSURE if unit in SOUND else ""
         own, more = (tuple(Column(name, unit, reference) for name in each) for each in (names, further))
         try:
-            return read_table(table, columns + own, more), unit
+            return read_table(table, columns + own + behind, more), unit
         except InputError as error:
             errors.append(error)
     told, *_ = errors
     allowed = told.allowed.replace(tried[0], " or ".join(tried))
-    raise InputError(told.what, told.received, allowed, told.remedy)
+    in_levels = isinstance(table, Path) and tells(table, "db") and not set(tried) & set(SOUND)
+    as_value = "Write each level L as a value: its reference times 10^(L/20)."
+    remedy = as_value if in_levels else told.remedy
+    raise InputError(told.what, told.received, allowed, remedy)

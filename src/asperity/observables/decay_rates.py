@@ -4,7 +4,7 @@ import numpy as np
 
 from asperity.case.any_case import AnyCase
 from asperity.case.form import name_of
-from asperity.case.measured import read_decay_rates
+from asperity.case.measured import read_rails
 from asperity.case.rolled_over import TrackKeys
 from asperity.case.scene import Case
 from asperity.case.tables import TableSource
@@ -65,12 +65,12 @@ def _sideways(case: Case) -> tuple[str, ...]:
 
 
 def _read(table: TableSource) -> list[Measured]:
-    """Both directions of a table of decay rates."""
-    centres, *rates = read_decay_rates(table)
+    """Both directions of a table of decay rates, each rail as a measurement of its own."""
+    centres, rates = read_rails(table)
     return [
         Measured(what, centres, each, source=name_of(table))
-        for what, each in zip((VERTICAL, LATERAL), rates, strict=True)
-        if each is not None
+        for what, rails in zip((VERTICAL, LATERAL), rates.transpose(1, 2, 0), strict=False)
+        for each in rails
     ]
 
 
