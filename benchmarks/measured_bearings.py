@@ -606,6 +606,30 @@ def ledger_rows(
             yield f"6205, {what}: {name}", "CWRU", measured[column], rows[name][column] + after, f"{off:+.2f}"
 
 
+def beside_rows(stated: list[dict[str, Any]], anew: list[dict[str, Any]]) -> Iterator[list[str]]:
+    """What was stated of each load beside what is computed anew: ranges, and the largest change of a line.
+
+    Runs are the same by all that was given, one to one.
+    """
+    given = ("load", "on", "size", "clearance", "path", "angle", "axial")
+    ran = [{tuple(r[name] for name in given): r["line"] for r in runs} for runs in (stated, anew)]
+    if ran[0].keys() != ran[1].keys() or len(ran[0]) != len(stated):
+        raise ValueError("runs anew are not those that were stated")
+    for part, load in dict.fromkeys((r["on"], r["load"]) for r in stated):
+        words = [f"{part}, {load:g} lb"]
+        for what, over in (("line", 100), ("sides", 0)):
+            # clearances and paths were run at some loads alone: sizes are common to all
+            ranges = [predicted_range(alike(runs), part, load, what, over) for runs in (stated, anew)]
+            words += [f"{found.min():.2f}–{found.max():.2f}" for found in ranges]
+        moved = [ran[1][key] / ran[0][key] - 1.0 for key in ran[0] if (key[1], key[0]) == (part, load)]
+        yield [*words, f"{100 * max(moved, key=abs):+.0f} %"]
+
+
+def alike(runs: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Runs of the middle clearance and path."""
+    return [r for r in runs if (r["clearance"], r["path"]) == (CLEARANCES[1], PATHS[0][1])]
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("data", type=Path, nargs="?", help="folder of the records")
@@ -616,9 +640,15 @@ def main() -> None:
     chosen = parser.parse_args()
     if chosen.predict:
         chosen.predict.write_text(json.dumps(predict(chosen.jobs), indent=1) + "\n")
+    held = json.loads(chosen.held.read_text())
+    if chosen.predict:
+        anew = json.loads(chosen.predict.read_text())["mfpt"]
+        head = (
+            "record | line over 100 lb, stated | anew | side bands, stated | anew | largest change of a line"
+        )
+        table(head, beside_rows(held["mfpt"], anew))
     if not chosen.data:
         return
-    held = json.loads(chosen.held.read_text())
     nice = nice_seen(np.load(chosen.data / NICE_FILE))
     seen, pits = hit_seen(np.load(chosen.data / HIT_FILE)), np.load(chosen.data / PIT_FILE)
     table(

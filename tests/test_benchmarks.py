@@ -13,6 +13,7 @@ from asperity.results import save, variable
 from small_cases import COARSE
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
+import measured_bearings as bearings
 import measured_railway as railway
 from compare_runs import compare, main
 from guard import CASES, ratios, rolled_in_turn, timed
@@ -154,6 +155,22 @@ def test_a_hammer_that_strikes_straight_hears_the_vertical_waves_alone():
     askew = railway.hammered_askew(keys | {"place": 0.01, "slope": 0.1}, motion)
     beside, at = railway.lateral_rates(sideways), int(np.argmin(np.abs(railway.CENTRES - 500.0)))
     assert 2.0 * beside[at] < askew[at] < 0.8 * plain[at]
+
+
+def test_what_is_computed_anew_stands_beside_the_same_run_of_what_was_stated():
+    run = {"on": "outer", "clearance": 1e-05, "path": 3000.0, "angle": 0.0, "axial": 0.0, "sides": 0.1}
+    lines = {(100, 2e-4): 1.0, (100, 5e-4): 2.0, (300, 2e-4): 0.5, (300, 5e-4): 2.0}
+    stated = [run | {"load": load, "size": size, "line": line} for (load, size), line in lines.items()]
+    stated.append(stated[-1] | {"clearance": 2e-5, "line": 9.0})  # of another clearance, at one load alone
+    anew = [
+        each | {"line": 2.0 * each["line"], "sides": 0.3} if each["load"] == 300 else each for each in stated
+    ]
+    rows = list(bearings.beside_rows(stated, anew[::-1]))
+    assert rows[0] == ["outer, 100 lb", "1.00–1.00", "1.00–1.00", "0.10–0.10", "0.10–0.10", "+0 %"]
+    assert rows[1] == ["outer, 300 lb", "0.50–1.00", "1.00–2.00", "0.10–0.10", "0.30–0.30", "+100 %"]
+    for other in (anew[1:], [*anew[1:], anew[0] | {"angle": 70.0}]):
+        with pytest.raises(ValueError, match="not those that were stated"):
+            list(bearings.beside_rows(stated, other))
 
 
 def test_seats_that_move_by_half_have_four_times_the_modal_mass():

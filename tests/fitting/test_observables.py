@@ -252,6 +252,48 @@ def test_a_load_that_may_be_zero_is_sought_by_its_logarithm(ball_bearing, ran):
     assert not found.estimates[0].limit
 
 
+def jumping_lines(case):
+    """Lines that rise and fall with the load, and jump by some tenths of a decibel from one to the next."""
+    lines, load = np.arange(1.0, 400.0), np.log(case.axial)
+    resonant = np.exp(-0.5 * ((load - np.log(30.0 + lines)) / 1.2) ** 2)
+    jumps = 1.0 + 0.03 * np.sin(997.0 * load * lines)
+    return {
+        bearing.LAW: ["hertz"],
+        bearing.ENVELOPE_FREQUENCY: lines,
+        bearing.ENVELOPE: (resonant * jumps)[None],
+    }
+
+
+def test_a_load_is_found_though_lines_jump_with_it_and_fall_again(ball_bearing, ran):
+    """Slopes over two per cent are those of jumps; one start ends on the wrong side of a resonance."""
+    ran(jumping_lines)
+    case = ball_bearing.with_(envelope_band=(2e3, 6e3))
+    at = np.array([50.0, 100.0, 200.0, 300.0, 370.0])
+    held = []
+    for number, true in enumerate((40.0, 150.0, 400.0, 1200.0)):
+        values = jumping_lines(case.with_(axial=float(true)))[bearing.ENVELOPE][0]
+        noise = 10.0 ** (0.025 * np.random.default_rng(number).standard_normal(at.size))
+        found = asperity.fit(case, Measured("envelope line", at, values[at.astype(int) - 1] * noise))
+        assert found.values["axial"] == pytest.approx(true, rel=0.25), true
+        low, high = found.intervals["axial"]
+        held.append(low <= true <= high)
+    assert sum(held) >= 3
+
+
+def test_a_search_where_runs_jump_begins_within_a_factor_of_ten(ball_bearing, ran):
+    """Limits of a load are twenty e-folds apart: places all over them are loads that nothing carries."""
+    calls = ran(jumping_lines)
+    case = ball_bearing.with_(envelope_band=(2e3, 6e3))
+    at = np.array([50.0, 100.0, 200.0, 300.0])
+    values = jumping_lines(case.with_(axial=400.0))[bearing.ENVELOPE][0][at.astype(int) - 1]
+    asperity.fit(case, Measured("envelope line", at, values), starts=4)
+    loads = np.array([each.axial for each in calls])
+    assert loads.min() >= 15.0
+    assert loads.max() <= 2600.0
+    assert loads.min() < 40.0
+    assert loads.max() > 1200.0
+
+
 def test_the_band_of_the_envelope_that_a_run_chose_stays(ball_bearing, ran):
     """From run to run another band was the most impulsive one: lines jumped by 16 dB."""
     lines = np.arange(1.0, 400.0)

@@ -12,7 +12,14 @@ from asperity.case.any_case import AnyCase
 from asperity.case.form import content, digest
 from asperity.errors import ComputationError, InputError, PhysicsWarning
 from asperity.fitting.free import Free, spectrum_of
-from asperity.fitting.search import FAR, central_slopes, forward_slopes, grouped_slopes
+from asperity.fitting.search import (
+    FAR,
+    RUN_STEP,
+    WIDE_STEP,
+    central_slopes,
+    forward_slopes,
+    grouped_slopes,
+)
 from asperity.fitting.tried import FitRuns, TriedCase
 from asperity.observables import observable
 from asperity.observables.observable import Measured, Observable, Values
@@ -182,6 +189,11 @@ class Problem:
         return any(of.by_run for of in self.observables)
 
     @cached_property
+    def jumps(self) -> bool:
+        """Whether what runs give jumps as a value is moved a little."""
+        return any(of.jumps for of in self.observables)
+
+    @cached_property
     def runs_at_once(self) -> int:
         """Runs that residuals at one place take: one for each of the conditions of what was measured."""
         run = [each for each, of in zip(self.measured, self.observables, strict=True) if of.by_run]
@@ -199,7 +211,9 @@ class Problem:
             return forward_slopes(self.residuals, self.low, self.high)(place)
         names = [each.name for each in self.free]
         if not self.held.keys() >= set(names):
-            found = grouped_slopes(self.residuals, place, self.high, self._groups)
+            found = grouped_slopes(
+                self.residuals, place, self.high, self._groups, WIDE_STEP if self.jumps else RUN_STEP
+            )
             self.held.update(zip(names, found.T * self.uncertainty, strict=True))
         return np.stack([self.held[name] for name in names], axis=1) / self.uncertainty[:, None]
 

@@ -62,6 +62,10 @@ SAME = 0.05
 """Part by which it may still change in the last of them."""
 STARTS = 8
 """From which a smallest sum of squares is sought, where predictions are quick."""
+STARTS_OF_JUMPS = 2
+"""The same where runs jump as a value is moved, and rise and fall with it."""
+REACH = float(np.log(10.0))
+"""On the scale of the search, how far from the case it then begins: a factor of ten."""
 RIVAL = 1.05
 """Ratio of root mean squares up to which another minimum meets the data as well."""
 NEAR = 0.1
@@ -222,7 +226,7 @@ def fitted(
     case = with_choices_fixed(case, case.laws[:1])
     runs = FitRuns(progress)
     asked = Problem(case, tuple(measured), chosen, of_case=case_key("fit", FORMAT, case), runs=runs)
-    usual = 1 if asked.by_run else STARTS
+    usual = STARTS if not asked.by_run else STARTS_OF_JUMPS if asked.jumps else 1
     count = whole("starts", starts or usual, "1 to 100", at_least=1, at_most=100)
     runs.most = _most_runs(asked, count)
     known, before = _known(replace(asked, free=()))
@@ -233,7 +237,7 @@ def fitted(
     require(len(chosen) < problem.count, "fit", received, "more values than free keys", "Free fewer keys.")
     left_open = list[Undetermined]()
     rough = replace(problem, fine=False)
-    places = starts_within(problem.low, problem.high, problem.start, count, rough.residuals)
+    places = starts_within(*_sought(problem), problem.start, count, rough.residuals)
     problem, minima = _searched(problem, places, progress)
     problem.held.clear()  # those of runs are found once more, where the search has ended
     contradicted = set[str]()
@@ -252,6 +256,14 @@ def fitted(
         problem, minima = fewer, held
     runs.most = runs.done + _runs_of_ends(problem)
     return _told(case, problem, before, minima, left_open)
+
+
+def _sought(problem: Problem) -> tuple[Array, Array]:
+    """Between which values a search begins: the limits; where runs jump, near the case."""
+    if not problem.jumps:
+        return problem.low, problem.high
+    low, high = (np.clip(problem.start + by, problem.low, problem.high) for by in (-REACH, REACH))
+    return low, high
 
 
 def _with_choices_of_runs(problem: Problem) -> Problem:
@@ -359,6 +371,7 @@ def _searched(problem: Problem, starts: Sequence[Array], progress: Progress) -> 
     for number, start in enumerate(starts if len(starts) > 1 else ()):
         progress(number, len(starts) + 1, words)
         found.append(_descent(rough, start, ROUGH))
+        problem.held.clear()  # slopes of runs are those of where they were found
     progress(len(starts), len(starts) + 1, words)
     found.sort(key=lambda each: each.square)
     best = _descent(problem, found[0].place if found else starts[0], FINE)

@@ -14,8 +14,9 @@ SCREENED = 6
 ROUGH, FINE = 12, 60
 """Most evaluations of residuals of a search from one start, and of the best one's end."""
 TOLERANCE = 1e-8
-STEP, RUN_STEP = 1e-4, 0.02
-"""Of differences, on the scale of the search, and of those of runs, whose grids may follow a value."""
+STEP, RUN_STEP, WIDE_STEP = 1e-4, 0.02, 0.15
+"""Of differences, on the scale of the search; of those of runs, whose grids may follow a value; and of those
+that jump, far enough that what they follow is more than the jumps."""
 ON_LIMIT = 2e-3
 """Share of its range by which a value may be off a limit that it lies on."""
 
@@ -112,6 +113,7 @@ def grouped_slopes(
     place: Array,
     high: Array,
     groups: Sequence[tuple[NDArray[np.int_], NDArray[np.bool_]]],
+    by: float = RUN_STEP,
 ) -> Array:
     """Slopes of residuals (n, p) by differences of runs, some values moved at once.
 
@@ -120,7 +122,7 @@ def grouped_slopes(
     here = residuals(place)
     found = np.zeros((len(here), len(place)))
     for numbers, moves in groups:
-        steps = np.where(place[numbers] + RUN_STEP <= high[numbers], RUN_STEP, -RUN_STEP)
+        steps = np.where(place[numbers] + by <= high[numbers], by, -by)
         moved = place.copy()
         moved[numbers] += steps
         change = residuals(moved) - here

@@ -152,6 +152,8 @@ class Observable:
         Standard deviation of each predicted value (n,), dB, by the chance of the record that was computed.
     chosen : callable, optional
         Keys, with their values, that a case does not give and that its run chose.
+    jumps : bool
+        Whether it jumps by tenths of a decibel as a key is moved by a per cent, and may rise and fall.
     """
 
     name: str
@@ -168,6 +170,7 @@ class Observable:
     keys: tuple[str, ...] = ()
     chance: Callable[[Collected, Measured], Array] | None = None
     chosen: Callable[[Predictable], dict[str, Any]] | None = None
+    jumps: bool = False
 
     @property
     def by_run(self) -> bool:
