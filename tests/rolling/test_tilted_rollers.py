@@ -14,6 +14,7 @@ from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.texture import StateTexture
 from asperity.rolling.bearing import BearingRings, roll_bearing
 from asperity.scenarios.prepared_bearing import expected, prepare_bearing
+from asperity.speeds import SpeedCourse
 from asperity.structures.ring import Ring
 from refusals import refusals
 
@@ -78,6 +79,37 @@ def test_at_a_high_speed_half_of_the_tilt_is_near_what_moments_leave():
     still = CYLINDRICAL.loaded(1000.0, tilt=1.5e-3, speed=300.0, cage_angles=run.cage[:1])
     for force, load in ((run.inner_force, still.inner_load), (run.outer_force, still.outer_load)):
         assert np.abs(force[:, 0] - load[0]).max() < 5e-3 * load.max()
+
+
+@pytest.mark.parametrize("rib", [None, 3e8])
+def test_the_rib_pushes_tapered_rollers_in_a_run_as_at_rest(rib):
+    bearing = TAPERED.with_(taper=0.07, rib_stiffness=rib)
+    LOADS[bearing] = LOADS[TAPERED]
+    slow = {"speed": 1e-3, "duration": 2e-6, "settling": 0.0, "time_step": 1e-6}
+    run = rolled(bearing, 0.0, tilt=1e-3, **slow)
+    still = bearing.loaded(*LOADS[bearing], tilt=1e-3, cage_angles=run.cage[:1])
+    most = still.inner_load.max()
+    assert still.rib_force.max() == pytest.approx(2.0 * most * np.sin(0.035), rel=1e-12)
+    assert np.abs(run.inner_force[:, 0] - still.inner_load[0]).max() < 1e-9 * most
+    assert np.abs(run.rib_force[:, 0] - still.rib_force[0]).max() < 1e-9 * most
+    fast = rolled(bearing, 0.0, tilt=1e-3, **slow | {"speed": 100.0, "centrifugal": True})
+    still = bearing.loaded(*LOADS[bearing], tilt=1e-3, speed=100.0, cage_angles=fast.cage[:1])
+    assert np.abs(fast.rib_force[:, 0] - still.rib_force[0]).max() < 1e-4 * most
+    turned = rolled(bearing, tilt=1e-3)
+    pushed = bearing.rib_force(turned.inner_force, turned.outer_force)
+    assert np.abs(turned.rib_force - pushed).max() < 1e-3 * most
+    assert turned.energy.residual < 1e-6
+    assert not rolled(TAPERED, 0.0, tilt=1e-3, **slow).rib_force.size
+
+
+def test_a_rib_follows_a_speed_that_changes():
+    """At a speed that is reached the rib pushes as at that speed: F_c goes with its square."""
+    bearing = TAPERED.with_(taper=0.07, rib_stiffness=3e8)
+    LOADS[bearing] = LOADS[TAPERED]
+    times = {"duration": 1e-3, "settling": 2e-3, "centrifugal": True}
+    course = SpeedCourse((0.0, 1.0), (100.0, 400.0))
+    changing, even = (rolled(bearing, speed=each, **times).rib_force[:, 0] for each in (course, 100.0))
+    assert np.abs(changing - even).max() < 1e-3 * even.max()
 
 
 def lines(run):

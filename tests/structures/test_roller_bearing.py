@@ -226,6 +226,34 @@ def test_multiples_of_the_speed_are_those_of_the_kinematics_of_rolling():
 # --- what cannot be
 
 
+def test_a_rib_is_a_spring_in_series_with_the_raceways():
+    """4 sin² β/k of the two ways of Q sin β along the axis that open both contacts, by hand."""
+    level = NU205.with_(contact_angle=0.25)
+    tapered = level.with_(taper=0.07, rib_stiffness=3e8)
+    rigid, soft = (each.loaded(axial=600.0) for each in (level, tapered))
+    load = 600.0 / (NU205.rollers * np.sin(0.25))
+    np.testing.assert_allclose(soft.rib_force, 2.0 * load * np.sin(0.035), rtol=1e-9)
+    moved = soft.displacement[:, 2] - rigid.displacement[:, 2]
+    np.testing.assert_allclose(moved, 4.0 * np.sin(0.035) ** 2 * load / 3e8 / np.sin(0.25), rtol=1e-9)
+    np.testing.assert_allclose(
+        tapered.with_(rib_stiffness=None).loaded(axial=600.0).displacement, rigid.displacement, rtol=1e-12
+    )
+    assert not rigid.rib_force.any()
+
+
+def test_the_stiffness_with_a_rib_is_the_derivative_of_its_forces():
+    """Of a fast tilted bearing: central differences of what moments and forces the ring's place needs."""
+    of = NU205.with_(contact_angle=0.25, taper=0.07, rib_stiffness=5e7)
+
+    def at(axial):
+        return of.loaded(800.0, axial, tilt=5e-4, speed=200.0, cage_angles=[0.1])
+
+    less, found, more = (at(600.0 + step) for step in (-0.1, 0.0, 0.1))
+    moved = (more.displacement - less.displacement)[0, :3] / 0.2
+    pushed = found.stiffness[0, :3, :3] @ moved
+    np.testing.assert_allclose(pushed, [0.0, 0.0, 1.0], atol=2e-6)
+
+
 test_geometries_that_do_not_close = refusals(
     ({"rollers": 17}, r"rollers: received 17 of 7.5 mm on a pitch diameter of 39 mm; .* at most 7.166"),
     ({"rollers": 2}, "a whole number at least 3"),
@@ -235,6 +263,12 @@ test_geometries_that_do_not_close = refusals(
     ({"crowning_straight": 1e-3}, "straight middle of the crowning: received 1 mm"),
     ({"slices": 5}, "slices of the roller bearing: received 5"),
     ({"contact_angle": 1.5}, "contact_angle of the roller bearing"),
+    (
+        {"taper": 0.1},
+        r"contact_angle: received 0° of rollers that taper; allowed: more than their taper, 5.73°",
+    ),
+    ({"taper": 0.1, "contact_angle": 0.1}, "contact_angle: received 5.73° of rollers that taper"),
+    ({"rib_stiffness": 1e8}, "rib_stiffness: received that of rollers that do not taper; allowed: none"),
     of=lambda changes: NU205.with_(**changes),
 )
 test_loads_that_cannot_be = refusals(

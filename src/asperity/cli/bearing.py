@@ -203,17 +203,24 @@ def _carried(keys: LoadKeys, picture: Path | None) -> dict[str, Any]:
     balls = {name: getattr(found, name)[0] for name in names}
     if isinstance(found, LoadedBearing) and of.arches:
         balls |= {name: getattr(found, name)[0] for name in FLANKS}
+    if isinstance(found, LoadedRollers) and found.bearing.taper:
+        balls["rib_force"] = found.rib_force[0]
     ring = {"displacement": found.displacement, "stiffness": found.stiffness, "imbalance": found.imbalance}
     return {"balls": balls, **ring, "films": films, "tones": tones}
 
 
 def _tilted(found: LoadedRollers) -> str:
-    """How the inner ring is held against tilt, in words."""
+    """How the inner ring is held against tilt, and rollers by a rib, in words."""
     tilt = float(found.displacement[0, 3])
-    if not tilt:
-        return "rings are held against tilt"
-    moment = rounded(float(found.moment[:, 0].mean()), 4)
-    return f"the inner ring is held at a tilt of {rounded(1e3 * tilt, 4)} mrad by a moment of {moment} N m"
+    told = "rings are held against tilt"
+    if tilt:
+        moment = rounded(float(found.moment[:, 0].mean()), 4)
+        told = (
+            f"the inner ring is held at a tilt of {rounded(1e3 * tilt, 4)} mrad by a moment of {moment} N m"
+        )
+    if not found.bearing.taper:
+        return told
+    return f"{told}; the rib pushes with up to {rounded(float(found.rib_force.max()), 4)} N along a roller"
 
 
 def _say_flanks(found: LoadedBearing, turning: Kinematics) -> None:

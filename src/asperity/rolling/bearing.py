@@ -11,7 +11,7 @@ from asperity.arguments import Array, ArrayLike, finite_array, positive, require
 from asperity.laws.linear import Linear
 from asperity.laws.spec import Law
 from asperity.progress import Progress
-from asperity.rolling.driver import RolledMechanism, rest_of, roll_mechanism
+from asperity.rolling.driver import rest_of, roll_mechanism
 from asperity.rolling.ledger import Ledger
 from asperity.rolling.mechanism import Mechanism, RollingContact, Side
 from asperity.rolling.soundness import STILL, without_rounding
@@ -21,7 +21,7 @@ from asperity.store import Checkpoint
 from asperity.structures.ball_bearing import BallBearing
 from asperity.structures.body import Body
 from asperity.structures.ring import Around, Direction, Ring
-from asperity.structures.roller_bearing import AnyBearing
+from asperity.structures.roller_bearing import AnyBearing, RollerBearing
 from asperity.written_numbers import count_of
 
 RINGS = ("inner", "outer")
@@ -84,6 +84,7 @@ class RolledBearing:
     inner_force: Array  # (Z, n), compression positive
     outer_force: Array  # (Z, n)
     ball_motion: Array  # (Z, n), outwards along the contacts' normal
+    rib_force: Array  # (Z, n), of the rib on tapered rollers along their axis; without rows of all others
     inner_motion: Array  # (3, n), along the radial load, across it, along the axis
     outer_motion: Array  # (3, n)
     acceleration: Array  # (sensors, n), m/s²
@@ -109,7 +110,7 @@ class RolledBearing:
         """The same, where nothing vibrates without what rounding leaves of motion and forces."""
         if self.vibrates:
             return self
-        names = "inner_force", "outer_force", "ball_motion", "inner_motion", "outer_motion"
+        names = "inner_force", "outer_force", "ball_motion", "rib_force", "inner_motion", "outer_motion"
         return without_rounding(self, *names, energy=self.energy.of_nothing)
 
 
@@ -195,47 +196,39 @@ def roll_bearing(
     each = len(mechanism.contacts) // bearing.balls
     contacts = len(mechanism.contacts)
     mechanism = replace(mechanism, contacts=[*mechanism.contacts, *turning.driven_round(rotating)])
+    rows = [
+        mechanism.row(place, ring.towards(angle, way))
+        for place, ring in ((INNER, rings.inner), (OUTER, rings.outer))
+        for angle, way in AXES
+    ]
+    rows += [_row_of(mechanism, rings, bearing, sensor) for sensor in sensors]
     run = roll_mechanism(
         mechanism,
         turning.usual_load(*loads),
         time_step=time_step,
         duration=duration,
         settling=settling,
-        sensors=_rows_of(mechanism, rings, bearing, sensors),
+        sensors=np.array(rows),
         highest_frequency=highest_frequency,
         progress=progress,
         checkpoint=checkpoint,
     )
-    return _recorded(run, turning, contacts, each)
-
-
-def _rows_of(
-    mechanism: Mechanism, rings: BearingRings, bearing: AnyBearing, sensors: Sequence[Sensor]
-) -> Array:
-    """What reads the motion of both rings, the inner one first, and then of sensors."""
-    axes = [
-        mechanism.row(place, ring.towards(angle, way))
-        for place, ring in ((INNER, rings.inner), (OUTER, rings.outer))
-        for angle, way in AXES
-    ]
-    return np.array([*axes, *(_row_of(mechanism, rings, bearing, sensor) for sensor in sensors)])
-
-
-def _recorded(run: RolledMechanism, turning: "_Turning", contacts: int, each: int) -> RolledBearing:
-    """Record of a bearing, of so many contacts, `each` of a ball, before those that drive it round."""
-    steps = run.contact_force.shape[1]
+    count = run.contact_force.shape[1]
+    steps = range(turning.total + 1 - count, turning.total + 1)
+    forces = run.contact_force[INNER:contacts:each], run.contact_force[OUTER:contacts:each]
+    moved = np.stack(run.degrees_of_freedom[: bearing.balls], axis=1)
     reached = run.reached[:contacts]
     return RolledBearing(
-        np.asarray(turning.time_step * np.arange(steps)),
-        turning.cage(range(turning.total + 1 - steps, turning.total + 1)),
-        run.contact_force[INNER:contacts:each],
-        run.contact_force[OUTER:contacts:each],
-        np.concatenate(run.degrees_of_freedom),
+        np.asarray(time_step * np.arange(count)),
+        turning.cage(steps),
+        *forces,
+        moved[0],
+        turning.rib_force(forces, moved[1:], steps, centrifugal=centrifugal),
         run.displacement[:3],
         run.displacement[3:6],
         run.acceleration[6:],
         np.array([(of[:, 0].min(), of[:, 1].max()) for of in (reached[INNER::each], reached[OUTER::each])]),
-        run.softening[:contacts].reshape(-1, each)[:, : len(RINGS)].T,
+        run.softening[:contacts].reshape(bearing.balls, each)[:, : len(RINGS)].T,
         run.energy,
         run.unconverged_steps,
     )
@@ -357,13 +350,10 @@ class _Turning:
         bending = self.rings.bending
         allowed = f"{of.balls}, one line for each ball, or none"
         require(len(ball_heights) in (0, of.balls), "heights of the balls", len(ball_heights), allowed)
-        none = np.zeros((1, 1))
         arm = 0.5 * of.pitch_diameter * math.sin(self.contact_angle)
         outwards = self.centrifugal_force if centrifugal else 0.0
         easing = self._beside_fastest(outwards / SHORT) if centrifugal else None
-        rows = np.array([[1.0], [-1.0]] if easing is None else [[1.0], [-1.0], [SHORT]])
-        pressing = np.array([-outwards if easing is None else 0.0])
-        ball = Body(np.array([[of.ball_mass]]), none, none, rows, pressing, np.zeros(len(rows)))
+        ball = self._ball(outwards, easing is not None)
         contacts: list[RollingContact] = []
         for j in range(of.balls):
             for ring, sign in ((INNER, -1.0), (OUTER, 1.0)):
@@ -385,6 +375,34 @@ class _Turning:
                 spring = Linear(outwards / SHORT, SOFT)
                 contacts.append(RollingContact(spring, self.azimuth(j).places, heights=easing))
         return Mechanism(self.rings.structures, [ball] * of.balls, contacts)
+
+    def _ball(self, outwards: float, easing: bool) -> Body:
+        """A ball, or a roller with its way along its axis against a rib that is a spring.
+
+        It is pressed outwards by a force, N, or by a spring of that force.
+        """
+        of = self.bearing
+        rib = of.rib_stiffness if isinstance(of, RollerBearing) else None
+        ways = np.eye(2)[: 1 if rib is None else 2]
+        opens, flung = (of.pushed_along, of.flung_along) if isinstance(of, RollerBearing) else (0.0, 0.0)
+        pulled = np.array([1.0, flung])
+        rows = np.array([[1.0, opens], [-1.0, opens], *([SHORT * pulled] if easing else [])]) @ ways.T
+        pressing = ways @ (-outwards * pulled) * (not easing)
+        stiffness = np.diag(ways @ [0.0, rib or 0.0])
+        mass = of.ball_mass * np.eye(len(ways))
+        return Body(mass, np.zeros_like(mass), stiffness, rows, pressing, np.zeros(len(rows)))
+
+    def rib_force(
+        self, forces: tuple[Array, Array], moved: Array, steps: range, *, centrifugal: bool
+    ) -> Array:
+        """Forces of the rib (Z, n), N: of one that is a spring by ways along the axis (1, Z, n), m."""
+        of = self.bearing
+        if not isinstance(of, RollerBearing) or not of.taper:
+            return np.zeros((0, len(steps)))
+        if of.rib_stiffness is not None:
+            return np.asarray(of.rib_stiffness * moved[0])
+        lift = self.centrifugal_force * self._share(steps) ** 2 * centrifugal
+        return of.rib_force(*forces, lift)
 
     def driven_round(self, force: float) -> list[RollingContact]:
         """A radial force, N, on the ring that turns and with it, by two springs that are pressed and pulled.

@@ -47,7 +47,7 @@ BY_PARTS = "areal"
 """The law by which parts are run alone: it sees whole contacts, and asks for no scan."""
 FORCES = ("inner_force", "outer_force")
 """They begin and end at once, where the filter rings: none is written that is below all that were found."""
-SIGNALS = (*FORCES, "ball_motion", "inner_motion", "outer_motion", "acceleration")
+SIGNALS = (*FORCES, "ball_motion", "rib_force", "inner_motion", "outer_motion", "acceleration")
 """What a run holds over time, beside what grows evenly."""
 
 
@@ -208,8 +208,8 @@ def cage_slip(case: BearingUnderLoad) -> Callable[[Array], Array]:
 
 def thinned(signal: Array, every: int) -> Array:
     """A signal (…, n) at one of so many samples, without what the fewer samples do not hold."""
-    if every == 1:
-        return signal
+    if every == 1 or not signal.size:
+        return signal[..., ::every]
     from scipy.signal import resample_poly
 
     return resample_poly(signal, 1, every, axis=-1, padtype="line")

@@ -173,6 +173,13 @@ ACCELERATION_LEVEL = _spectra(
     "ring_acceleration_level(law, ring_sensor, band)", "dB re 1e-6 m/s2", _LEVEL, missing=_STILL
 )
 BALL_MOTION = _rolling("ball_motion(law, ball, time)", "m", "motion of a ball along its contacts, outwards")
+RIB_FORCE = Entry(
+    "rolling",
+    "rib_force(law, ball, time)",
+    "N",
+    "force of the rib on a roller along its axis",
+    condition="of a bearing of tapered rollers",
+)
 RING_MOTION = _rolling("ring_motion(law, ring, direction, time)", "m", "motion of a ring")
 RING_ACCELERATION = _rolling(
     "ring_acceleration(law, ring_sensor, time)", "m/s2", "acceleration of the outer ring, radially outwards"

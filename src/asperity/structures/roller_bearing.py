@@ -7,7 +7,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
-from asperity.arguments import ArrayLike, one_of, require
+import numpy as np
+
+from asperity.arguments import Array, ArrayLike, one_of, require
 from asperity.contact.crowning import FORMS, OF_DIAMETER, Crowning, Form
 from asperity.contact.hertz import relative_radius
 from asperity.contact.slices import FEWEST, SLICES, SlicedContact
@@ -52,7 +54,11 @@ class RollerBearing:
     roller_diameter, roller_length, pitch_diameter : float
         D, the effective length L, and d_m, m.
     contact_angle : float
-        Of both raceways, rad: 0 of a cylindrical roller bearing.
+        Of the outer raceway, rad: 0 of a cylindrical roller bearing.
+    taper : float
+        Angle between opposite sides of a tapered roller, rad, by which the inner raceway is at a smaller one.
+    rib_stiffness : float, optional
+        Of the end of a tapered roller on the rib of the inner ring, N/m; rigid by default.
     clearance : float
         Diametral: how far the inner ring moves from side to side, m; below zero the rollers are pressed.
     crowning : {"cylindrical", "circular", "partial", "logarithmic"}
@@ -79,8 +85,11 @@ class RollerBearing:
     Notes
     -----
     Contacts are the slices of ISO/TS 16281, see `asperity.SlicedContact`. There is no film of lubricant, no
-    friction, and rings do not bend. Of a tapered roller bearing both raceways are taken as parallel, at the
-    angle of the outer one, and the small force of the rib on the rollers is left out.
+    friction, and rings do not bend. A tapered roller is pushed along its axis by both contacts, by
+    (Q_i + Q_o) sin β with β half the taper, and the rib holds it there. As rib and inner contact together
+    press the inner ring along the normal of the outer contact, a ring sees both raceways at the angle of the
+    outer one, and the rib as a spring in series with them, a compliance of 4 sin² β/k. That the rib pushes
+    beside the middle of a roller's end, and so tilts it a little, is left out.
 
     Examples
     --------
@@ -97,15 +106,16 @@ class RollerBearing:
     ELEMENT: ClassVar = "roller"
     """What rolls in it."""
     LEFT_OUT: ClassVar = (
-        "There is no film of lubricant, no friction, and no rib; while it turns rings are held at their "
-        "tilt, rollers at half of it; slices of a roller do not know of each other, nor of sharp ends."
+        "There is no film of lubricant, no friction, and no rib but that of tapered rollers; while it turns "
+        "rings are held at their tilt, rollers at half of it; slices of a roller do not know of each other, "
+        "nor of sharp ends."
     )
     """What no computation of it has."""
     LEFT_OUT_OILED: ClassVar = (
-        "Contacts are full of oil; there is no friction, and no rib; while it turns rings are held at their "
-        "tilt, rollers at half of it; slices of a roller do not know of each other, nor of sharp ends; "
-        "static loads are those without oil, and all contacts with a ring have one damping, that under its "
-        "heaviest load."
+        "Contacts are full of oil; there is no friction, and no rib but that of tapered rollers; while it "
+        "turns rings are held at their tilt, rollers at half of it; slices of a roller do not know of each "
+        "other, nor of sharp ends; static loads are those without oil, and all contacts with a ring have one "
+        "damping, that under its heaviest load."
     )
     """What none with oil has."""
     SOURCE: ClassVar = "ISO/TS 16281:2008 (load and stiffness of rollers by slices)."
@@ -132,6 +142,22 @@ class RollerBearing:
         "angle of the raceways to the axis; 0 of cylindrical rollers",
         "0 deg to 80 deg: radial bearings lie between",
         default=0.0,
+    )
+    taper: float = parameter(
+        Quantity("rad", at_least=0, at_most=0.35),
+        "4 deg",
+        "angle between opposite sides of tapered rollers",
+        "0 deg to 20 deg: tapered rollers lie between",
+        default=0.0,
+    )
+    rib_stiffness: float | None = parameter(
+        Quantity("N/m", above=0),
+        "300 MN/m",
+        "stiffness of the end of a tapered roller on the rib",
+        "1 N/m to 1 TN/m: softer holds nothing, harder is rigid",
+        default=None,
+        otherwise="the rib is rigid",
+        goes_with="taper",
     )
     clearance: float = parameter(
         Quantity("m"), "20 um", "diametral clearance; below zero the rollers are pressed", _GAP, default=0.0
@@ -181,6 +207,20 @@ class RollerBearing:
         received = f"{rounded(self.clearance * 1e6, 4)} µm"
         allowed = f"less than {rounded(D * 1e5)} µm, a tenth of the roller's diameter, to either side"
         require(abs(self.clearance) < 0.1 * D, "clearance", received, allowed, "Is the unit right?")
+        received = f"{rounded(math.degrees(self.contact_angle), 4)}° of rollers that taper"
+        allowed = (
+            f"more than their taper, {rounded(math.degrees(self.taper), 4)}°: the inner raceway is a cone"
+        )
+        cone = not self.taper or self.contact_angle > self.taper
+        require(cone, "contact_angle", received, allowed, "Give both, or no taper.")
+        alone = self.rib_stiffness is None or self.taper > 0.0
+        require(
+            alone,
+            "rib_stiffness",
+            "one of rollers that do not taper",
+            "none",
+            "Give a taper, or leave it out.",
+        )
         _ = self.profile  # checks the crowning
 
     @classmethod
@@ -251,6 +291,33 @@ class RollerBearing:
         """Force of a roller outwards, m (d_m/2) (2π f_c)², N, at a speed, turns per second."""
         cage = 2.0 * math.pi * self.kinematics(speed).cage
         return 0.5 * self.roller_mass * self.pitch_diameter * cage**2
+
+    @property
+    def pushed_along(self) -> float:
+        """Share sin β of a contact's force that pushes a roller along its axis, β half its taper."""
+        return math.sin(0.5 * self.taper)
+
+    @property
+    def flung_along(self) -> float:
+        """Centrifugal force along the axis of a tapered roller over that along its normal, tan (α − β)."""
+        return math.tan(self.contact_angle - 0.5 * self.taper) if self.taper else 0.0
+
+    def rib_force(self, inner: Array, outer: Array, lift: ArrayLike = 0.0) -> Array:
+        """Force of the rib on tapered rollers along their axis.
+
+        Parameters
+        ----------
+        inner, outer : ndarray (…,)
+            Forces of the contacts of rollers, N.
+        lift : array_like
+            Centrifugal force along their normal, N.
+
+        Returns
+        -------
+        ndarray (…,)
+            N; zero of rollers that do not taper.
+        """
+        return self.pushed_along * (inner + outer) + self.flung_along * np.asarray(lift)
 
     def interference_force(self, overlap: float) -> float:
         """Force of a roller between raceways that overlap along its normal, m; N."""

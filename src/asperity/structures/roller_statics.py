@@ -118,6 +118,13 @@ class LoadedRollers:
         return np.einsum("mz,mzi,mzj->mij", taken, normal, normal)
 
     @property
+    def rib_force(self) -> Array:
+        """Forces of the rib on tapered rollers along their axis (m, Z), N."""
+        of = self.bearing
+        lift = of.centrifugal_force(self.speed) * math.cos(of.contact_angle)
+        return of.rib_force(self.inner_load, self.outer_load, lift)
+
+    @property
     def carrying_length(self) -> Array:
         """Length of each roller that touches the inner ring (m, Z), m."""
         share = np.count_nonzero(self.inner_slices, axis=-1) / self.bearing.slices
@@ -224,11 +231,18 @@ def _both_planes(what: str, given: ArrayLike | None, *, largest: float = math.in
 
 @dataclass(frozen=True)
 class _Rollers:
-    """What rollers do between raceways that overlap by a stretch (…, 2): approach, and tilt times L/2, m."""
+    """What rollers do between raceways that overlap by a stretch (…, 2): approach, and tilt times L/2, m.
+
+    Each is where the energy is least over its way into the outer raceway, its tilt, and its way along its
+    axis against a rib that is a spring, which opens both contacts.
+    """
 
     inner: SlicedContact
     outer: SlicedContact
     lift: float  # centrifugal force along the normal of the contacts, N
+    along: float  # the same along the axis, N
+    opens: float  # how far both contacts open for a way along the axis
+    rib: float  # stiffness of the rib, N/m; infinite of a rigid one, against which they do not move
 
     @property
     def lever(self) -> float:
@@ -242,30 +256,40 @@ class _Rollers:
         force = np.stack([found.force, found.moment], axis=-1) * scales
         return found.energy, force, found.stiffness * scales[:, None] * scales
 
-    def together(self, stretch: Array) -> tuple[Array, Array, Array, Array]:
-        """Energy, force (…, 2), stiffness (…, 2, 2), and overlap of the outer contacts (…, 2)."""
-        if self.lift == 0.0:
+    def together(self, stretch: Array) -> tuple[Array, Array, Array, tuple[Array, Array]]:
+        """Energy, force (…, 2), stiffness (…, 2, 2), and overlaps of inner and outer contacts (…, 2)."""
+        held = math.isinf(self.rib)
+        if self.lift == 0.0 and held:
             # both contacts are alike: the roller is in the middle
-            outer = 0.5 * stretch
-            energy, force, stiffness = self._pressed(self.inner, outer)
-            return 2.0 * energy, force, 0.5 * stiffness, outer
-        free = np.array([self.outer.approach(self.lift), 0.0])
-        start = np.maximum(0.5 * stretch, 0.0) * [1.0, 0.0] + 0.5 * free
-        scale = self.lift + float(self._pressed(self.inner, 0.5 * stretch)[1].max())
-        outer, _ = least_energy(lambda at: self._apart(stretch, at), start, scale, "balance of a roller")
-        energy, force, stiffness = self._pressed(self.inner, stretch - outer)
-        below = self._pressed(self.outer, outer)
-        sum_of = stiffness + below[2]
-        ridge = 1e-12 * np.trace(sum_of, axis1=-2, axis2=-1)[..., None, None] * np.eye(2)
-        condensed = stiffness - stiffness @ np.linalg.solve(sum_of + ridge, stiffness)
-        return energy + below[0] - self.lift * outer[..., 0], force, condensed, outer
+            half = 0.5 * stretch
+            energy, force, stiffness = self._pressed(self.inner, half)
+            return 2.0 * energy, force, 0.5 * stiffness, (half, half)
+        ways = np.eye(3)[: 2 if held else 3]
+        into_outer, out_of_inner = (
+            ways[:, :2] + sign * self.opens * np.outer(ways[:, 2], [1.0, 0.0]) for sign in (-1.0, 1.0)
+        )
+        pulled = ways @ [self.lift, 0.0, self.along]
+        spring = np.diag(ways @ [0.0, 0.0, 0.0 if held else self.rib])
 
-    def _apart(self, stretch: Array, outer: Array) -> tuple[Array, Array, Array]:
-        """Energy of rollers that overlap the outer raceway by so much, its gradient and Hessian."""
-        above = self._pressed(self.inner, stretch - outer)
-        below = self._pressed(self.outer, outer)
-        gradient = below[1] - above[1] - self.lift * np.array([1.0, 0.0])
-        return above[0] + below[0] - self.lift * outer[..., 0], gradient, above[2] + below[2]
+        def energy_of(way: Array) -> tuple[Array, Array, Array]:
+            above = self._pressed(self.inner, stretch - way @ out_of_inner)
+            below = self._pressed(self.outer, way @ into_outer)
+            gradient = below[1] @ into_outer.T - above[1] @ out_of_inner.T + way @ spring - pulled
+            hessian = into_outer @ below[2] @ into_outer.T + out_of_inner @ above[2] @ out_of_inner.T + spring
+            stored = 0.5 * ((way @ spring) * way).sum(-1) - way @ pulled
+            return above[0] + below[0] + stored, gradient, hessian
+
+        free = np.array([self.outer.approach(self.lift), 0.0])
+        start = (np.maximum(0.5 * stretch, 0.0) * [1.0, 0.0] + 0.5 * free) @ ways[:, :2].T
+        scale = self.lift + float(self._pressed(self.inner, 0.5 * stretch)[1].max()) or 1.0
+        way, _ = least_energy(energy_of, start, scale, "balance of a roller")
+        energy, _, hessian = energy_of(way)
+        overlaps = stretch - way @ out_of_inner, way @ into_outer
+        _, force, stiffness = self._pressed(self.inner, overlaps[0])
+        ridge = 1e-12 * np.trace(hessian, axis1=-2, axis2=-1)[..., None, None] * np.eye(len(ways))
+        moved = out_of_inner @ stiffness
+        condensed = stiffness - np.swapaxes(moved, -1, -2) @ np.linalg.solve(hessian + ridge, moved)
+        return energy, force, condensed, overlaps
 
 
 def _solved(
@@ -279,7 +303,9 @@ def _solved(
     overlap = 0.5 * max(-bearing.clearance, 0.0)
     scale = max(load[0], load[2], float(np.abs(load[MOMENTS]).max()) / (0.5 * bearing.roller_length))
     scale = max(scale, inner.force(0.5 * overlap))
-    rollers = _Rollers(inner, outer, lift if lift > TOLERANCE * scale else 0.0)
+    rib = math.inf if bearing.rib_stiffness is None else bearing.rib_stiffness
+    lift = lift if lift > TOLERANCE * scale else 0.0
+    rollers = _Rollers(inner, outer, lift, bearing.flung_along * lift, bearing.pushed_along, rib)
     levers = np.array([1.0, 1.0, 1.0, rollers.lever, rollers.lever])
     moved = moved / levers  # tilts of the ring as ways at half a length of a roller
     rest = np.array([-0.5 * bearing.clearance * math.cos(bearing.contact_angle), 0.0])
@@ -305,12 +331,11 @@ def _solved(
 
     ring, imbalance = least_energy(energy_of, start[:, free], max(scale, lift), "balance of the inner ring")
     stretch = rest + np.einsum("mzik,mk->mzi", moved[..., free], ring)
-    _, pulled, stiffness, below = rollers.together(stretch)
+    _, pulled, stiffness, overlaps = rollers.together(stretch)
     start[:, free] = ring
-    above = stretch - below
     slices = [
         contact.pressed(at[..., 0], at[..., 1] / rollers.lever).loads
-        for contact, at in ((inner, above), (outer, below))
+        for contact, at in zip((inner, outer), overlaps, strict=True)
     ]
     whole = np.einsum("mzik,mzij,mzjl->mkl", moved, stiffness, moved)
     return LoadedRollers(
