@@ -268,7 +268,7 @@ test_geometries_that_do_not_close = refusals(
         r"contact_angle: received 0° of rollers that taper; allowed: more than their taper, 5.73°",
     ),
     ({"taper": 0.1, "contact_angle": 0.1}, "contact_angle: received 5.73° of rollers that taper"),
-    ({"rib_stiffness": 1e8}, "rib_stiffness: received that of rollers that do not taper; allowed: none"),
+    ({"rib_stiffness": 1e8}, "rib_stiffness: received one of rollers that do not taper; allowed: none"),
     of=lambda changes: NU205.with_(**changes),
 )
 test_loads_that_cannot_be = refusals(

@@ -30,8 +30,12 @@ class Tilted(spec.OnLaw):
     contact: SlicedContact
 
     def prepare(self, positions: spec.ArrayLike) -> spec.Prepared:
-        """Lay the law out on (n, 2): positions, m, and angles by which the far end comes nearer, rad."""
+        """Lay the law out on (n, 2): positions, m, and angles by which the far end comes nearer, rad.
+
+        On positions alone (n,) rollers lie level.
+        """
         at = np.asarray(positions, dtype=float)
+        at = np.column_stack([at, np.zeros(len(at))]) if at.ndim == 1 else at
         level = self.law.prepare(np.ascontiguousarray(at[:, 0]))
         if not isinstance(level, pointforce.Prepared) or level.form != pointforce.SHIFTED:
             allowed = "a force curve that follows a texture, as areal"

@@ -208,7 +208,9 @@ def cage_slip(case: BearingUnderLoad) -> Callable[[Array], Array]:
 
 def thinned(signal: Array, every: int) -> Array:
     """A signal (…, n) at one of so many samples, without what the fewer samples do not hold."""
-    if every == 1 or not signal.size:
+    if every == 1:
+        return signal
+    if not signal.size:
         return signal[..., ::every]
     from scipy.signal import resample_poly
 

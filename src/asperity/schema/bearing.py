@@ -127,7 +127,7 @@ OIL_PRESSURE = _oil("oil_pressure_viscosity", "1/Pa", "its pressure-viscosity co
 
 # --- along the roller that carries most
 
-OF_ROLLERS = "of a roller bearing"
+OF_ROLLERS, OF_TAPERED = "of a roller bearing", "of a bearing of tapered rollers"
 ALONG_ROLLER, LINE_LOAD, LINE_PRESSURE = (
     Entry("bearing", f"{name}", units, meaning, condition=OF_ROLLERS)
     for name, units, meaning in (
@@ -178,7 +178,7 @@ RIB_FORCE = Entry(
     "rib_force(law, ball, time)",
     "N",
     "force of the rib on a roller along its axis",
-    condition="of a bearing of tapered rollers",
+    condition=OF_TAPERED,
 )
 RING_MOTION = _rolling("ring_motion(law, ring, direction, time)", "m", "motion of a ring")
 RING_ACCELERATION = _rolling(

@@ -213,14 +213,9 @@ class RollerBearing:
         )
         cone = not self.taper or self.contact_angle > self.taper
         require(cone, "contact_angle", received, allowed, "Give both, or no taper.")
-        alone = self.rib_stiffness is None or self.taper > 0.0
-        require(
-            alone,
-            "rib_stiffness",
-            "one of rollers that do not taper",
-            "none",
-            "Give a taper, or leave it out.",
-        )
+        held = self.rib_stiffness is None or self.taper > 0.0
+        received, remedy = "one of rollers that do not taper", "Give a taper, or leave it out."
+        require(held, "rib_stiffness", received, "none", remedy)
         _ = self.profile  # checks the crowning
 
     @classmethod
