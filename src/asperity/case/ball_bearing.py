@@ -430,17 +430,13 @@ class BearingUnderLoad(AnyCase):
                 yield InputError(f"shaft.{way}_stiffness", received, allowed)
 
     def _problems_of_grooves(self) -> Iterator[InputError]:
-        """Grooves of one arc."""
+        """What grooves of one arc alone have."""
         of = self.bearing.bearing
-        if isinstance(of, BallBearing) and of.arch_angle is not None:
-            received = f"{rounded(math.degrees(of.arch_angle), 4)} deg"
-            remedy = (
-                "asperity bearing says how such a bearing carries its load. Under an axial load a ball is "
-                f"between two flanks: take bearing.contact_angle = "
-                f'"{rounded(math.degrees(of.free_angle), 4)} deg".'
-            )
-            allowed = "none of a bearing that runs, in grooves of one arc"
-            yield InputError("bearing.arch_angle", received, allowed, remedy)
+        if isinstance(of, BallBearing) and of.arches:
+            for name in ("friction", "wear_coefficient"):
+                if (given := getattr(self, name)) is not None:
+                    allowed = "none of gothic arches: on two flanks a ball spins on both rings"
+                    yield InputError(name, f"{given:g}", allowed, "Leave it out.")
 
     def _problems_of_faults(self) -> Iterator[InputError]:
         """Faults on parts that are there."""

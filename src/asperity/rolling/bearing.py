@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 from typing import Self
 
 import numpy as np
@@ -81,9 +82,11 @@ class RolledBearing:
 
     time: Array  # (n,), s, from zero, after the run-in
     cage: Array  # (n,), angle of the first ball from the radial load
-    inner_force: Array  # (Z, n), compression positive
+    inner_force: Array  # (Z, n), compression positive; of an arch both flanks together
     outer_force: Array  # (Z, n)
-    ball_motion: Array  # (Z, n), outwards along the contacts' normal
+    ball_motion: Array  # (Z, n), outwards along the contacts' normal; between arches radially
+    # (2 Z, n), of arches as of `contact_force` what the flanks against a negative axial load carry; else none
+    flank_force: Array
     rib_force: Array  # (Z, n), of the rib on tapered rollers along their axis; without rows of all others
     inner_motion: Array  # (3, n), along the radial load, across it, along the axis
     outer_motion: Array  # (3, n)
@@ -110,8 +113,8 @@ class RolledBearing:
         """The same, where nothing vibrates without what rounding leaves of motion and forces."""
         if self.vibrates:
             return self
-        names = "inner_force", "outer_force", "ball_motion", "rib_force", "inner_motion", "outer_motion"
-        return without_rounding(self, *names, energy=self.energy.of_nothing)
+        names = "inner_motion", "outer_motion", "inner_force", "outer_force", "flank_force"
+        return without_rounding(self, *names, "rib_force", "ball_motion", energy=self.energy.of_nothing)
 
 
 def roll_bearing(
@@ -186,14 +189,13 @@ def roll_bearing(
     -------
     RolledBearing
     """
-    arches = isinstance(bearing, BallBearing) and bool(bearing.arches)
-    require(not arches, "grooves", "of two arcs", "of one arc: a ball rolls on one contact with each ring")
     total = round(settling / time_step) + round(duration / time_step)
     turning = _Turning(bearing, rings, speed, time_step, settling, total, slip, (tilt, rotating_tilt))
     mechanism = turning.mechanism((inner_law, outer_law), ball_heights, centrifugal=centrifugal)
     loads = radial, axial + bearing.preload
     mechanism = turning.loaded(mechanism, loads)
     each = len(mechanism.contacts) // bearing.balls
+    flanks = len(turning.flanks)
     contacts = len(mechanism.contacts)
     mechanism = replace(mechanism, contacts=[*mechanism.contacts, *turning.driven_round(rotating)])
     rows = [
@@ -215,20 +217,28 @@ def roll_bearing(
     )
     count = run.contact_force.shape[1]
     steps = range(turning.total + 1 - count, turning.total + 1)
-    forces = run.contact_force[INNER:contacts:each], run.contact_force[OUTER:contacts:each]
+    of_flanks = run.contact_force[:contacts].reshape(bearing.balls, each, count)[:, : 2 * flanks]
+    of_flanks = of_flanks.reshape(bearing.balls, flanks, 2, count).transpose(1, 2, 0, 3)
+    inner, outer = of_flanks[0] if flanks == 1 else of_flanks.sum(axis=0)
     moved = np.stack(run.degrees_of_freedom[: bearing.balls], axis=1)
-    reached = run.reached[:contacts]
+    at_contacts = [
+        values[:contacts].reshape(bearing.balls, each, -1)[:, : 2 * flanks]
+        for values in (run.reached, run.softening)
+    ]
+    reached, softening = (values.reshape(bearing.balls, flanks, 2, -1) for values in at_contacts)
     return RolledBearing(
         np.asarray(time_step * np.arange(count)),
         turning.cage(steps),
-        *forces,
+        inner,
+        outer,
         moved[0],
-        turning.rib_force(forces, moved[1:], steps, centrifugal=centrifugal),
+        of_flanks[1:].reshape(-1, count),
+        turning.rib_force((inner, outer), moved[1:], steps, centrifugal=centrifugal),
         run.displacement[:3],
         run.displacement[3:6],
         run.acceleration[6:],
-        np.array([(of[:, 0].min(), of[:, 1].max()) for of in (reached[INNER::each], reached[OUTER::each])]),
-        run.softening[:contacts].reshape(bearing.balls, each)[:, : len(RINGS)].T,
+        np.stack([reached[..., 0].min(axis=(0, 1)), reached[..., 1].max(axis=(0, 1))], axis=1),
+        softening[..., 0].max(axis=1).T,
         run.energy,
         run.unconverged_steps,
     )
@@ -356,8 +366,8 @@ class _Turning:
         ball = self._ball(outwards, easing is not None)
         contacts: list[RollingContact] = []
         for j in range(of.balls):
-            for ring, sign in ((INNER, -1.0), (OUTER, 1.0)):
-                sides = [Side(ring, self.azimuth(j), sign)]
+            for flank, (ring, sign) in product(self.flanks, ((INNER, -1.0), (OUTER, 1.0))):
+                sides = [Side(ring, self.azimuth(j), sign * self._seen(ring, flank))]
                 if ring in bending:
                     sides.append(Side(bending[ring][0], self.azimuth(j, ring), sign))
                 apart = 0.0 if ring else of.apart(self.contact_angle)
@@ -376,21 +386,35 @@ class _Turning:
                 contacts.append(RollingContact(spring, self.azimuth(j).places, heights=easing))
         return Mechanism(self.rings.structures, [ball] * of.balls, contacts)
 
-    def _ball(self, outwards: float, easing: bool) -> Body:
-        """A ball, or a roller with its way along its axis against a rib that is a spring.
+    @property
+    def flanks(self) -> tuple[float, ...]:
+        """Sides of a groove on which a ball touches: both of an arch, against a positive axial load first."""
+        return (1.0, -1.0) if isinstance(self.bearing, BallBearing) and self.bearing.arches else (1.0,)
 
-        It is pressed outwards by a force, N, or by a spring of that force.
+    def _seen(self, ring: int, flank: float) -> Array:
+        """How a contact on a flank sees the modes of a ring (m,): axial ones from its side."""
+        axial = (self.rings.inner, self.rings.outer)[ring].axial
+        return np.where(axial != 0.0, flank, 1.0)
+
+    def _ball(self, outwards: float, easing: bool) -> Body:
+        """A ball or roller along its normal; with its way along the axis between arches, or against a rib.
+
+        It is pressed outwards by a force, N, along the normal, or by a spring of that force.
         """
         of = self.bearing
-        rib = of.rib_stiffness if isinstance(of, RollerBearing) else None
-        ways = np.eye(2)[: 1 if rib is None else 2]
-        opens, flung = (of.pushed_along, of.flung_along) if isinstance(of, RollerBearing) else (0.0, 0.0)
-        pulled = np.array([1.0, flung])
-        rows = np.array([[1.0, opens], [-1.0, opens], *([SHORT * pulled] if easing else [])]) @ ways.T
-        pressing = ways @ (-outwards * pulled) * (not easing)
-        stiffness = np.diag(ways @ [0.0, rib or 0.0])
-        mass = of.ball_mass * np.eye(len(ways))
-        return Body(mass, np.zeros_like(mass), stiffness, rows, pressing, np.zeros(len(rows)))
+        rows, pulled, held = np.array([[1.0], [-1.0]]), np.ones(1), np.zeros(1)
+        if len(self.flanks) > 1:
+            cosine, sine = math.cos(self.contact_angle), math.sin(self.contact_angle)
+            normals = [(cosine, flank * sine) for flank in self.flanks]
+            rows = np.array([(sign * out, sign * up) for out, up in normals for sign in (1.0, -1.0)])
+            pulled, held = np.array([1.0 / cosine, 0.0]), np.zeros(2)
+        elif isinstance(of, RollerBearing) and of.rib_stiffness is not None:
+            rows = np.column_stack([rows, np.full(2, of.pushed_along)])
+            pulled, held = np.array([1.0, of.flung_along]), np.array([0.0, of.rib_stiffness])
+        pressing = -outwards * pulled * (not easing)
+        rows = np.vstack([rows, SHORT * pulled[None]]) if easing else rows
+        mass = of.ball_mass * np.eye(len(held))
+        return Body(mass, np.zeros_like(mass), np.diag(held), rows, pressing, np.zeros(len(rows)))
 
     def rib_force(
         self, forces: tuple[Array, Array], moved: Array, steps: range, *, centrifugal: bool

@@ -20,7 +20,7 @@ class Side:
 
     structure: int
     trajectory: Trajectory
-    sign: float = 1.0
+    sign: float | Array = 1.0  # of all its modes, or of each (m,)
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +73,7 @@ class Mechanism:
         require(sum(rails) <= 1, "structures", count_of(sum(rails), "rail"), "one at most")
         for contact in self.contacts:
             signs = [side.sign for side in contact.sides]
-            alone = signs == [1.0] or not any(rails[side.structure] for side in contact.sides)
+            alone = not any(rails[side.structure] for side in contact.sides) or signs == [1.0]
             allowed = "the rail alone, with a sign of 1"
             require(alone, "sides of a contact on a rail", f"{len(signs)} of signs {signs}", allowed)
 

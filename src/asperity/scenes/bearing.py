@@ -92,9 +92,8 @@ def motion_group(computed: ComputedBearing) -> Values:
     """Lay out what was recorded in time, at the sampling rate of the case."""
     balls = np.arange(computed.bearing.balls)
     stacked = computed.stacked
-    pushed = stacked("rib_force")
-    of_rib = {bearing.RIB_FORCE: pushed} if pushed.size else {}
-    return recorded_group(computed) | {
+    some = {bearing.FLANK_FORCE: stacked("flank_force"), bearing.RIB_FORCE: stacked("rib_force")}
+    motion: Values = recorded_group(computed) | {
         bearing.TACHO: speed_at(computed.case.speed, computed.first.time),
         bearing.ROLLING_BALL: 1 + balls,
         bearing.ROLLING_RING: list(RINGS),
@@ -106,8 +105,8 @@ def motion_group(computed: ComputedBearing) -> Values:
         bearing.BALL_MOTION: stacked("ball_motion"),
         bearing.RING_MOTION: np.stack([stacked(f"{ring}_motion") for ring in RINGS], axis=1),
         bearing.RING_ACCELERATION: stacked("acceleration"),
-        **of_rib,
     }
+    return motion | {entry: forces for entry, forces in some.items() if forces.size}
 
 
 # --- in one sentence

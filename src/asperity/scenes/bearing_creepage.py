@@ -22,8 +22,8 @@ def creepage_group(computed: ComputedBearing) -> Values:
 
 
 def _has_grooves(computed: ComputedBearing) -> bool:
-    """Whether its contacts are curved across the path, as those of rollers are not."""
-    return isinstance(computed.case.contacts[0][0], Hertz)
+    """Whether its contacts are curved across the path, one with each ring: not of rollers, nor of arches."""
+    return isinstance(computed.case.contacts[0][0], Hertz) and not computed.bearing.arches
 
 
 OBSERVER = Observer(

@@ -45,11 +45,13 @@ def out_of_place(case: BearingUnderLoad, law: str, run: RolledBearing) -> Iterat
         law,
     )
     azimuth = run.cage + 2.0 * np.pi * np.arange(of.balls)[:, None] / of.balls
-    radial = np.cos(angle) * np.cos(azimuth)
-    axial = np.full(azimuth.shape, np.sin(angle))
-    for way, along, load in (("radial", radial, case.radial), ("axial", axial, case.axial + of.preload)):
-        if load > 0.0 and along.any():
-            mean = float(np.mean(np.sum(run.inner_force * along, axis=0))) / load
+    radial = np.cos(angle) * np.sum(run.inner_force * np.cos(azimuth), axis=0)
+    other_way = np.sum(run.flank_force[: of.balls], axis=0)
+    axial = np.sin(angle) * (np.sum(run.inner_force, axis=0) - 2.0 * other_way)
+    carried = case.radial, (case.axial + of.preload) * bool(angle)
+    for way, force, load in zip(("radial", "axial"), (radial, axial), carried, strict=True):
+        if load > 0.0:
+            mean = float(np.mean(force)) / load
             yield from load_missed(f"mean {way} force", "of the balls on the inner ring", mean, law)
 
 

@@ -47,7 +47,7 @@ BY_PARTS = "areal"
 """The law by which parts are run alone: it sees whole contacts, and asks for no scan."""
 FORCES = ("inner_force", "outer_force")
 """They begin and end at once, where the filter rings: none is written that is below all that were found."""
-SIGNALS = (*FORCES, "ball_motion", "rib_force", "inner_motion", "outer_motion", "acceleration")
+SIGNALS = (*FORCES, "flank_force", "rib_force", "ball_motion", "inner_motion", "outer_motion", "acceleration")
 """What a run holds over time, beside what grows evenly."""
 
 

@@ -128,6 +128,7 @@ OIL_PRESSURE = _oil("oil_pressure_viscosity", "1/Pa", "its pressure-viscosity co
 # --- along the roller that carries most
 
 OF_ROLLERS, OF_TAPERED = "of a roller bearing", "of a bearing of tapered rollers"
+OF_ARCHES = "of a ball bearing with gothic arches, of whose flanks the force is the sum"
 ALONG_ROLLER, LINE_LOAD, LINE_PRESSURE = (
     Entry("bearing", f"{name}", units, meaning, condition=OF_ROLLERS)
     for name, units, meaning in (
@@ -173,6 +174,13 @@ ACCELERATION_LEVEL = _spectra(
     "ring_acceleration_level(law, ring_sensor, band)", "dB re 1e-6 m/s2", _LEVEL, missing=_STILL
 )
 BALL_MOTION = _rolling("ball_motion(law, ball, time)", "m", "motion of a ball along its contacts, outwards")
+FLANK_FORCE = Entry(
+    "rolling",
+    "flank_force(law, contact, time)",
+    "N",
+    "part of the contact force on the flank against a negative axial load",
+    condition=OF_ARCHES,
+)
 RIB_FORCE = Entry(
     "rolling",
     "rib_force(law, ball, time)",

@@ -144,7 +144,7 @@ class BallBearing:
     arch_angle: float | None = parameter(
         Quantity("rad", above=0),
         "35 deg",
-        "angle at which a ball touches both flanks of each groove, a gothic arch; for bearings at rest alone",
+        "angle at which a ball touches both flanks of each groove, a gothic arch",
         _ANGLES,
         default=None,
     )
@@ -266,10 +266,12 @@ class BallBearing:
     def apart(self, contact_angle: float) -> float:
         """Gap of both contacts of a ball together, rings centred, along their normal at an angle, rad; m.
 
-        A − (A − P_d/2) cos α: half the diametral clearance of balls that touch at 0, and none axially.
+        A − (A − P_d/2) cos α: half the diametral clearance of balls that touch at 0, and none axially. Of
+        arches, with centres A sin α_g apart along the axis, A − (A cos α_g − P_d/2) cos α − A sin α_g sin α.
         """
         distance = self.groove_distance
-        return distance - (distance - 0.5 * self.radial_clearance) * math.cos(contact_angle)
+        along = distance * math.sin(self.arch_angle or 0.0)
+        return distance - self.centres_apart * math.cos(contact_angle) - along * math.sin(contact_angle)
 
     @property
     def raceway_radii(self) -> tuple[float, float]:
