@@ -6,6 +6,7 @@ import mpmath as mp
 import numpy as np
 from ledger import Check
 
+from asperity.diagnostics import one_anderon
 from asperity.spectra import a_weighting, third_octave_bands
 
 A_WEIGHTING = {
@@ -20,6 +21,15 @@ def weighting():
     for nominal, printed in A_WEIGHTING.items():
         exact = 1000 * 10 ** (round(10 * np.log10(nominal / 1000)) / 10)
         yield row(f"A-weighting at {nominal:g} Hz", printed, a_weighting(exact), "dB")
+
+
+def anderons():
+    """One anderon is a microinch of way for each radian, over the root of the octaves of the band."""
+    source = "Sugawara Laboratories, units of measurement, 50 Hz to 10.8 kHz in three, as printed"
+    for band in ((50.0, 300.0), (300.0, 1800.0), (1800.0, 10.8e3)):
+        what = f"one anderon of {band[0]:g} to {band[1]:g} Hz at 1800 1/min"
+        (found,) = one_anderon(30.0, (band,))
+        yield Check(what, 7.698e-6, found, "µm/s", source=source, tolerance=5.1e-10, absolute=True)
 
 
 def bands():

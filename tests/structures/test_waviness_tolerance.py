@@ -113,15 +113,30 @@ def test_the_command_lists_them_and_says_how_they_add():
     assert "With its --outer-mass those are left out" in call(*words).stdout
 
 
+def test_limits_in_anderons_are_velocities():
+    """A microinch for each radian at 1500 1/min, over the root of lb 6 octaves: 25.4 nm · 50π/s · 1.608."""
+    words = "bearing", "6205", "--axial", "150 N", "--speed", "1500 1/min", "--json", "--limits"
+    in_anderons = json.loads(call(*words, "2 anderon, 1 anderon, none").stdout)["tolerances"]
+    one = 25.4e-9 * 50.0 * np.pi * np.sqrt(np.log2(6.0))
+    as_velocities = json.loads(call(*words, f"{2.0 * one} m/s, {one} m/s, none").stdout)["tolerances"]
+    assert [each["amplitude"] for each in in_anderons] == pytest.approx(
+        [each["amplitude"] for each in as_velocities]
+    )
+
+
 @pytest.mark.parametrize(
     ("words", "message"),
     [
         (
+            ("--limits", "many anderons, none, none"),
+            "--limits: received 'many'; allowed: a number",
+        ),
+        (
             ("--limits", "5 um/s"),
-            "--limits: received '5 um/s'; allowed: three velocities with units",
+            "--limits: received '5 um/s'; allowed: three velocities with units, in anderons",
         ),
         (("--limits", "5 um, 1 um/s, none"), "--limits: received 'um'; allowed: a unit that converts to m/s"),
-        (("--limits", "0 um/s, 1 um/s, none"), "or none, as '50 um/s, 30 um/s, none', greater than 0"),
+        (("--limits", "0 um/s, 1 um/s, none"), "or none, as '50 um/s, 2 anderon, none', greater than 0"),
         (("--limits", "5 um/s, none, none", "--signal", "a.npy"), "--limits: received a signal, a picture"),
         (("--outer-mass", "60 g"), "--outer-mass: received '60 g'; allowed: --limits with it"),
         (("--limits", "5 um/s, none, none"), "speed: received none; allowed: a speed greater than 0"),

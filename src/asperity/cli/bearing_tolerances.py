@@ -6,7 +6,7 @@ from dataclasses import asdict
 from typing import Any
 
 from asperity.case.loaded_bearing import read_bearing
-from asperity.diagnostics import ISO_BANDS
+from asperity.diagnostics import ISO_BANDS, one_anderon
 from asperity.diagnostics.decision import part_name
 from asperity.errors import InputError
 from asperity.structures.waviness_tolerance import BELOW, WaveTolerance, ring_frequency, wave_tolerances
@@ -17,13 +17,13 @@ from asperity.written_numbers import rounded
 MOST = 100
 """Waves per turn up to which they are told: shorter ones are ground, and measured, as roughness."""
 WIDTH = 110
-ALLOWED = "three velocities with units, or none, as '50 um/s, 30 um/s, none'"
+ALLOWED = "three velocities with units, in anderons, or none, as '50 um/s, 2 anderon, none'"
 
 
 def say_tolerances(source: str, options: Mapping[str, Any], limits: str, outer_mass: str | None) -> list[Any]:
     """Print the amplitude of each wave that makes the limit of its band alone; return them for programs."""
-    velocities = _limits(limits)
     keys = read_bearing(source, options)
+    velocities = _limits(limits, keys.speed or 1.0)
     if not keys.speed:
         raise InputError("speed", "none", "a speed greater than 0", "Give it, as in --speed '1800 1/min'.")
     found = keys.loaded()
@@ -62,13 +62,23 @@ def _row(each: WaveTolerance, element: str) -> list[str]:
     ]
 
 
-def _limits(text: str) -> list[float]:
-    """Limits of the three bands, m/s; infinite where there is none."""
+def _limit(word: str, one: float) -> float:
+    """Limit of a band in which one anderon is so much, m/s."""
+    if word == "none":
+        return math.inf
+    number, _, unit = word.partition(" ")
+    if unit.strip() in ("anderon", "anderons"):
+        return one * quantity(number, "")
+    return quantity(word, "m/s")
+
+
+def _limits(text: str, speed: float) -> list[float]:
+    """Limits of the three bands, m/s, at turns per second; infinite where there is none."""
     words = [word.strip() for word in text.split(",")]
     if len(words) != len(ISO_BANDS):
         raise InputError("--limits", f"'{text}'", ALLOWED)
     try:
-        found = [math.inf if word == "none" else quantity(word, "m/s") for word in words]
+        found = [_limit(word, one) for word, one in zip(words, one_anderon(speed), strict=True)]
     except InputError as error:
         raise error.about("--limits") from None
     if not all(each > 0.0 for each in found):

@@ -225,15 +225,17 @@ def law_summaries(tree: DataTree) -> list[dict[str, Any]]:
     """Numbers of each law's force, in SI: mean, rms about it, largest, and losses of contact.
 
     Over a track the totals of its sound, dB(A), and the parts of its sound power. Of a bearing the rms
-    velocities, m/s, in the bands in which it is judged, at the first accelerometer.
+    velocities, m/s and in anderons, in the bands in which it is judged, at the first accelerometer.
     """
     from asperity.scenes import schema
     from asperity.studies.member import kept
 
     found = kept(tree)
-    velocity = bearing.BAND_VELOCITY.name
     names = [*rolling.FORCES, *(entry.name for entry in (*rolling.LOSSES, *schema.TOTALS))]
-    told = [velocity] if velocity in found else [name for name in names if name in found]
+    of_bearings = [
+        entry.name for entry in (bearing.BAND_VELOCITY, bearing.BAND_ANDERONS) if entry.name in found
+    ]
+    told = of_bearings or [name for name in names if name in found]
     parts = schema.RADIATOR.name
 
     def numbers(of: DataArray) -> Any:

@@ -13,6 +13,7 @@ from asperity.diagnostics.envelopes import (
     band_deviations,
     band_velocities,
     envelope_spectrum,
+    one_anderon,
     prewhitened,
 )
 from asperity.diagnostics.hypotheses import Hypothesis, Tone
@@ -40,5 +41,6 @@ __all__ = [
     "find_lines",
     "impulsive_band",
     "kurtogram",
+    "one_anderon",
     "prewhitened",
 ]  # fmt: skip

@@ -236,6 +236,41 @@ def band_velocities(
     return np.where(high <= 0.5 * rate, rms, np.nan)
 
 
+ANDERON = 25.4e-9
+"""Way of one anderon, a microinch for each radian of a turn, m: of a band as wide as an octave."""
+
+
+def one_anderon(speed: float, bands: tuple[tuple[float, float], ...] = ISO_BANDS) -> Array:
+    """Rms velocities in bands that are one anderon.
+
+    Parameters
+    ----------
+    speed : float
+        Of the ring that turns, turns per second.
+    bands : tuple of (float, float)
+        Edges, Hz.
+
+    Returns
+    -------
+    ndarray (bands,)
+        m/s.
+
+    Notes
+    -----
+    An anderon is a microinch of radial way for each radian of a turn, the rms of a band over the root of its
+    octaves: Sugawara Laboratories, units of measurement (of their instruments), where the bands end at
+    10 800 Hz and one is 7.698 µm/s at 1800 1/min in each of the three. That of ISO 15242 ends at 10 kHz.
+
+    Examples
+    --------
+    >>> from asperity.diagnostics import one_anderon
+    >>> " ".join(f"{each * 1e6:.3f}" for each in one_anderon(1800 / 60))
+    '7.698 7.698 7.531'
+    """
+    low, high = np.array(bands, dtype=float).T
+    return ANDERON * 2.0 * np.pi * positive("speed (1/s)", speed) * np.sqrt(np.log2(high / low))
+
+
 PARTS = 8
 """Parts of a record by which it is known how sure a velocity in a band is."""
 

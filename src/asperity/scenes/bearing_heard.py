@@ -8,7 +8,7 @@ import numpy as np
 from asperity import diagnostics
 from asperity.arguments import Array
 from asperity.case.ball_bearing import BearingUnderLoad
-from asperity.diagnostics import ISO_BANDS, LineFamily, Spectrum, band_velocities
+from asperity.diagnostics import ISO_BANDS, LineFamily, Spectrum, band_velocities, one_anderon
 from asperity.diagnostics.orders import envelope_order_spectrum
 from asperity.rolling.bearing import RolledBearing
 from asperity.scenes.observer import Observer
@@ -52,7 +52,11 @@ def heard_group(case: BearingUnderLoad, runs: Mapping[str, RolledBearing]) -> Va
             part: replace(each, **{what: np.nan * getattr(each, what) for what in LINES.values()})
             for part, each in found[n].items()
         }
+    steady: Values = {}
+    if not isinstance(case.speed, SpeedCourse):
+        steady = {bearing.BAND_ANDERONS: np.array(judged) / one_anderon(case.speed)}
     return {
+        **steady,
         spectra.LAW: list(runs),
         spectra.FREQUENCY: frequency[kept],
         bearing.VELOCITY_AMPLITUDE: [each[kept] / (2.0 * np.pi * frequency[kept]) for _, each in lines],
@@ -124,6 +128,7 @@ OBSERVER = Observer(
         bearing.SENSOR,
         bearing.JUDGED_BAND,
         bearing.BAND_VELOCITY,
+        bearing.BAND_ANDERONS,
         bearing.ENVELOPE_LOW,
         bearing.ENVELOPE_HIGH,
         bearing.ENVELOPE_SPEED,
@@ -138,6 +143,7 @@ OBSERVER = Observer(
     needs=("bearing",),
     sources=(
         "ISO 15242-2 (velocities in three bands).",
+        "Sugawara Laboratories, units of measurement (anderon).",
         "R. B. Randall and J. Antoni, Mechanical Systems and Signal Processing 25 (2011) 485 (envelope).",
         "J. Antoni, Mechanical Systems and Signal Processing 21 (2007) 108 (spectral kurtosis, of the band).",
     ),

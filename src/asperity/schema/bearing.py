@@ -201,6 +201,14 @@ _BEYOND = "the sampling does not reach the band"
 BAND_VELOCITY = _bearing(
     "band_velocity(law, ring_sensor, judged_band)", "m/s", "rms radial velocity in a band", missing=_BEYOND
 )
+BAND_ANDERONS = Entry(
+    "bearing",
+    "band_anderons(law, ring_sensor, judged_band)",
+    "1",
+    "radial velocity in a band in anderons",
+    condition="of a bearing whose speed stays",
+    missing=_BEYOND,
+)
 _CHANCE = "standard deviation of a velocity by the chance of one record, over it, by parts of the record"
 BAND_DEVIATION = _bearing(
     "band_velocity_deviation(law, ring_sensor, judged_band)", "1", _CHANCE, missing=f"{_BEYOND}, or {_STILL}"
@@ -281,6 +289,7 @@ KEPT: dict[Entry, dict[str, int]] = {
     HEAVIEST_PARAMETER: {},
     FRICTION_TORQUE: {},
     BAND_VELOCITY: {},
+    BAND_ANDERONS: {},
     BAND_DEVIATION: {},
     ACCELERATION_LEVEL: {},
     spectra.FORCE_LEVEL: {},

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from xarray import DataTree
 
-from asperity.diagnostics import Kurtogram
+from asperity.diagnostics import Kurtogram, one_anderon
 from asperity.diagnostics.kurtogram import LEAST_POWER
 from asperity.reporting import chart, data, panels
 from asperity.reporting.figure import Lines, Of, figure
@@ -410,10 +410,14 @@ def bands_table(tree: DataTree) -> ReportTable:
         each for each in (bearing.BAND_DEVIATION, bearing.ALONE_DEVIATION) if data.present(tree, each)
     )
     chance = [data.values(tree, each).reshape(-1, velocities.shape[1]) for each in by_chance]
+    steady = data.present(tree, bearing.BAND_ANDERONS)
+    one = 1e6 * one_anderon(data.number(tree, bearing.TURNING) or 1.0)
     for n, (band, values) in enumerate(
         zip(data.words(tree, bearing.JUDGED_BAND), 1e6 * velocities.T, strict=True)
     ):
         columns[f"{band}, µm/s"] = number_cells(values, in_digits(3))
+        if steady:
+            columns[f"{band}, anderon"] = number_cells(values / one[n], in_digits(3))
         if chance:
             of_records = np.concatenate(chance)[:, n]
             missing = np.full(len(rows) - len(of_records), np.nan)
@@ -424,6 +428,10 @@ def bands_table(tree: DataTree) -> ReportTable:
         "ISO 15242-2 measures it at 1800 1/min of the inner ring under an axial load, with filters whose "
         "slopes this leaves out."
     )
+    if steady:
+        note += (
+            " One anderon is a microinch for each radian of a turn, over the root of the octaves of the band."
+        )
     return table("judged_bands", "Velocities in the bands of ISO 15242-2", columns, note)
 
 
