@@ -1,5 +1,6 @@
 """A ball bearing of four-point contact that runs: its statics, limits, energy, and as a case."""
 
+import json
 import math
 
 import numpy as np
@@ -12,6 +13,7 @@ from asperity.case.cases import as_case
 from asperity.errors import CaseError
 from asperity.laws import HertzLaw
 from asperity.rolling.bearing import BearingRings, roll_bearing
+from asperity.scenes.figures.bearing import bands_table
 from asperity.speeds import SpeedCourse
 from asperity.structures.ring import Ring
 from refusals import refusals
@@ -164,6 +166,12 @@ def test_a_case_of_it_runs_and_writes_what_each_flank_carries():
     inner = (force - 2.0 * flank).values[0, :8].sum(axis=0).mean()
     angle = found["bearing"].attrs["contact_angle"]
     assert math.sin(angle) * inner == pytest.approx(300.0, rel=0.02)
+    checks = json.loads(found["contact"].attrs["validity"])
+    assert not [each for each in checks if each["grade"] == "out of range"]
+    anderons, velocities = (found[f"bearing/band_{name}"].values[0, 0] for name in ("anderons", "velocity"))
+    one = 25.4e-9 * 200.0 * np.pi * np.sqrt(np.log2([6.0, 6.0, 10.0 / 1.8]))
+    np.testing.assert_allclose(anderons, velocities / one, rtol=1e-12)
+    assert {"50 to 300 Hz, µm/s", "50 to 300 Hz, anderon"} <= set(bands_table(found).head)
 
 
 test_what_arches_have_not_is_refused = refusals(

@@ -467,6 +467,7 @@ def test_a_bearing_whose_rings_or_forces_cannot_be_is_doubted(share, moved, word
         inner_force=share * 100.0 * along / np.sum(along**2, axis=0),
         inner_motion=np.full((3, 50), moved),
         outer_motion=np.zeros((3, 50)),
+        flank_force=np.zeros((0, 50)),
     )
     told = [finding.brief for finding in out_of_place(case, "hertz", run)]
     assert len(told) == len(words)
@@ -482,6 +483,7 @@ def test_balls_carry_the_preload_along_the_axis():
             inner_force=np.full((BALLS, 9), share * carried),
             inner_motion=np.zeros((3, 9)),
             outer_motion=np.zeros((3, 9)),
+            flank_force=np.zeros((0, 9)),
         )
         told = [finding.brief for finding in out_of_place(case, "hertz", run)]
         assert len(told) == len(words)

@@ -12,7 +12,7 @@ from asperity.arguments import Array, ArrayLike, finite_array, positive, require
 from asperity.laws.linear import Linear
 from asperity.laws.spec import Law
 from asperity.progress import Progress
-from asperity.rolling.driver import rest_of, roll_mechanism
+from asperity.rolling.driver import RolledMechanism, rest_of, roll_mechanism
 from asperity.rolling.ledger import Ledger
 from asperity.rolling.mechanism import Mechanism, RollingContact, Side
 from asperity.rolling.soundness import STILL, without_rounding
@@ -194,8 +194,6 @@ def roll_bearing(
     mechanism = turning.mechanism((inner_law, outer_law), ball_heights, centrifugal=centrifugal)
     loads = radial, axial + bearing.preload
     mechanism = turning.loaded(mechanism, loads)
-    each = len(mechanism.contacts) // bearing.balls
-    flanks = len(turning.flanks)
     contacts = len(mechanism.contacts)
     mechanism = replace(mechanism, contacts=[*mechanism.contacts, *turning.driven_round(rotating)])
     rows = [
@@ -215,33 +213,7 @@ def roll_bearing(
         progress=progress,
         checkpoint=checkpoint,
     )
-    count = run.contact_force.shape[1]
-    steps = range(turning.total + 1 - count, turning.total + 1)
-    of_flanks = run.contact_force[:contacts].reshape(bearing.balls, each, count)[:, : 2 * flanks]
-    of_flanks = of_flanks.reshape(bearing.balls, flanks, 2, count).transpose(1, 2, 0, 3)
-    inner, outer = of_flanks[0] if flanks == 1 else of_flanks.sum(axis=0)
-    moved = np.stack(run.degrees_of_freedom[: bearing.balls], axis=1)
-    at_contacts = [
-        values[:contacts].reshape(bearing.balls, each, -1)[:, : 2 * flanks]
-        for values in (run.reached, run.softening)
-    ]
-    reached, softening = (values.reshape(bearing.balls, flanks, 2, -1) for values in at_contacts)
-    return RolledBearing(
-        np.asarray(time_step * np.arange(count)),
-        turning.cage(steps),
-        inner,
-        outer,
-        moved[0],
-        of_flanks[1:].reshape(-1, count),
-        turning.rib_force((inner, outer), moved[1:], steps, centrifugal=centrifugal),
-        run.displacement[:3],
-        run.displacement[3:6],
-        run.acceleration[6:],
-        np.stack([reached[..., 0].min(axis=(0, 1)), reached[..., 1].max(axis=(0, 1))], axis=1),
-        softening[..., 0].max(axis=1).T,
-        run.energy,
-        run.unconverged_steps,
-    )
+    return turning.recorded(run, contacts // bearing.balls, centrifugal=centrifugal)
 
 
 @dataclass(eq=False)
@@ -427,6 +399,37 @@ class _Turning:
             return np.asarray(of.rib_stiffness * moved[0])
         lift = self.centrifugal_force * self._share(steps) ** 2 * centrifugal
         return of.rib_force(*forces, lift)
+
+    def recorded(self, run: RolledMechanism, each: int, *, centrifugal: bool) -> RolledBearing:
+        """What a run of balls with so many contacts each has recorded."""
+        balls, flanks = self.bearing.balls, len(self.flanks)
+        count = run.contact_force.shape[1]
+        steps = range(self.total + 1 - count, self.total + 1)
+
+        def of_flanks(values: Array) -> Array:
+            """Of all contacts (flanks, rings, Z, …), but of springs that ease centrifugal force."""
+            by_ball = values[: each * balls].reshape(balls, each, -1)[:, : 2 * flanks]
+            return by_ball.reshape(balls, flanks, 2, -1).transpose(1, 2, 0, 3)
+
+        forces, reached = of_flanks(run.contact_force), of_flanks(run.reached)
+        inner, outer = forces[0] if flanks == 1 else forces.sum(axis=0)
+        moved = np.stack(run.degrees_of_freedom[:balls], axis=1)
+        return RolledBearing(
+            np.asarray(self.time_step * np.arange(count)),
+            self.cage(steps),
+            inner,
+            outer,
+            moved[0],
+            forces[1:].reshape(-1, count),
+            self.rib_force((inner, outer), moved[1:], steps, centrifugal=centrifugal),
+            run.displacement[:3],
+            run.displacement[3:6],
+            run.acceleration[6:],
+            np.stack([reached[..., 0].min(axis=(0, 2)), reached[..., 1].max(axis=(0, 2))], axis=1),
+            of_flanks(run.softening)[..., 0].max(axis=0),
+            run.energy,
+            run.unconverged_steps,
+        )
 
     def driven_round(self, force: float) -> list[RollingContact]:
         """A radial force, N, on the ring that turns and with it, by two springs that are pressed and pulled.
