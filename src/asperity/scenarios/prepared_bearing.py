@@ -47,7 +47,7 @@ ON = {
 STEP_TIME = {"ball": 2.0e-6, "roller": 1.75e-6}
 """Processor time of a step of a ball or a roller with its record and spectra, s; rollers by seven runs."""
 TILTED = 2.4
-"""Times as long where slices are summed in every step; six runs."""
+"""Times as long where slices are summed in every step; by three runs."""
 SOLUTION_TIME = 1e-3
 """Processor time of a contact of a scan, s."""
 CELL_TIME = 3.5e-8
