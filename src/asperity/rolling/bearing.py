@@ -196,19 +196,13 @@ def roll_bearing(
     mechanism = turning.loaded(mechanism, loads)
     contacts = len(mechanism.contacts)
     mechanism = replace(mechanism, contacts=[*mechanism.contacts, *turning.driven_round(rotating)])
-    rows = [
-        mechanism.row(place, ring.towards(angle, way))
-        for place, ring in ((INNER, rings.inner), (OUTER, rings.outer))
-        for angle, way in AXES
-    ]
-    rows += [_row_of(mechanism, rings, bearing, sensor) for sensor in sensors]
     run = roll_mechanism(
         mechanism,
         turning.usual_load(*loads),
         time_step=time_step,
         duration=duration,
         settling=settling,
-        sensors=np.array(rows),
+        sensors=_rows_of(mechanism, rings, bearing, sensors),
         highest_frequency=highest_frequency,
         progress=progress,
         checkpoint=checkpoint,
@@ -496,6 +490,18 @@ def _heights(line: ArrayLike | None, spots: Values, raised: float) -> Values:
 def _sum(first: Values, second: Values) -> Values:
     """Both together."""
     return lambda steps: first(steps) + second(steps)
+
+
+def _rows_of(
+    mechanism: Mechanism, rings: BearingRings, bearing: AnyBearing, sensors: Sequence[Sensor]
+) -> Array:
+    """What reads the motion of both rings, the inner one first, and then of sensors."""
+    axes = [
+        mechanism.row(place, ring.towards(angle, way))
+        for place, ring in ((INNER, rings.inner), (OUTER, rings.outer))
+        for angle, way in AXES
+    ]
+    return np.array([*axes, *(_row_of(mechanism, rings, bearing, sensor) for sensor in sensors)])
 
 
 def _row_of(mechanism: Mechanism, rings: BearingRings, bearing: AnyBearing, sensor: Sensor) -> Array:
