@@ -2,6 +2,7 @@
 
 import json
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from asperity.case.cases import as_case
 from asperity.errors import CaseError
 from asperity.laws import HertzLaw
 from asperity.rolling.bearing import BearingRings, roll_bearing
+from asperity.scenes.bearing_validity import out_of_place
 from asperity.scenes.figures.bearing import bands_table
 from asperity.speeds import SpeedCourse
 from asperity.structures.ring import Ring
@@ -172,6 +174,16 @@ def test_a_case_of_it_runs_and_writes_what_each_flank_carries():
     one = 25.4e-9 * 200.0 * np.pi * np.sqrt(np.log2([6.0, 6.0, 10.0 / 1.8]))
     np.testing.assert_allclose(anderons, velocities / one, rtol=1e-12)
     assert {"50 to 300 Hz, µm/s", "50 to 300 Hz, anderon"} <= set(bands_table(found).head)
+
+
+def test_forces_of_both_flanks_carry_an_axial_load_with_their_difference():
+    """Three parts in all, of which one is on the other flank: the axial load is one part."""
+    case = as_case(CASE | {"radial": "0 N"})
+    part = np.full((8, 5), 300.0 / (8.0 * math.sin(case.static.contact_angle)))
+    still = np.zeros((3, 5))
+    forces = {"inner_force": 3.0 * part, "flank_force": np.concatenate([part, part])}
+    run = SimpleNamespace(cage=np.zeros(5), inner_motion=still, outer_motion=still, **forces)
+    assert not list(out_of_place(case, "hertz", run))
 
 
 test_what_arches_have_not_is_refused = refusals(

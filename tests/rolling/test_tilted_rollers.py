@@ -14,6 +14,7 @@ from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.texture import StateTexture
 from asperity.rolling.bearing import BearingRings, roll_bearing
 from asperity.scenarios.prepared_bearing import expected, prepare_bearing
+from asperity.scenes.computed_bearing import compute_bearing
 from asperity.speeds import SpeedCourse
 from asperity.structures.ring import Ring
 from refusals import refusals
@@ -110,6 +111,16 @@ def test_a_rib_follows_a_speed_that_changes():
     course = SpeedCourse((0.0, 1.0), (100.0, 400.0))
     changing, even = (rolled(bearing, speed=each, **times).rib_force[:, 0] for each in (course, 100.0))
     assert np.abs(changing - even).max() < 1e-3 * even.max()
+
+
+def test_a_rigid_rib_holds_what_is_thrown_at_the_speed_of_the_moment():
+    bearing = TAPERED.with_(taper=0.07)
+    LOADS[bearing] = LOADS[TAPERED]
+    course = SpeedCourse([0.0, 1e-3], [100.0, 400.0])
+    run = rolled(bearing, speed=course, duration=1e-3, settling=1e-4, centrifugal=True)
+    thrown = run.rib_force - np.sin(0.035) * (run.inner_force + run.outer_force)
+    expected = bearing.centrifugal_force(1.0) * course.at(run.time) ** 2 * np.sin(0.3 - 0.035)
+    np.testing.assert_allclose(thrown, np.tile(expected, (7, 1)), rtol=1e-9)
 
 
 def lines(run):
@@ -229,6 +240,19 @@ def test_a_case_tells_tilt_moment_and_time():
     assert "tilt of the inner ring" not in dict(level_rows)
     beyond, level_beyond = (of.time.parts["each part alone"] for of in (work, level_work))
     assert beyond == pytest.approx(2.4 * level_beyond)
+
+
+def test_a_case_runs_tilted():
+    """Its inner ring lies as much less deep than a level one as at rest, in the mean."""
+    run = {"duration": "30 ms", "rotating_tilt": "0 mrad", "outer_raceway": None}
+    level, tilted = (as_case(CASE | run | {"tilt": tilt}) for tilt in ("0 mrad", "-2 mrad"))
+    found, still = [], []
+    for case in (level, tilted):
+        (rolled_case,) = compute_bearing(prepare_bearing(case), lambda *_: None).rolled.values()
+        found.append((rolled_case.inner_motion - rolled_case.outer_motion)[0].mean())
+        still.append(case.static.displacement[:, 0].mean())
+    assert found[1] - found[0] == pytest.approx(still[1] - still[0], rel=0.05)
+    assert found[1] < 0.98 * found[0]  # ends are pressed
 
 
 test_tilts_that_cannot_be_are_refused = refusals(

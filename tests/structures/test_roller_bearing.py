@@ -241,6 +241,17 @@ def test_a_rib_is_a_spring_in_series_with_the_raceways():
     assert not rigid.rib_force.any()
 
 
+def test_a_fast_tapered_roller_is_in_balance_along_its_axis():
+    """Forces of both contacts, of the rib along the axis at α − β, and of m (d_m/2) ω² outwards."""
+    of = NU205.with_(contact_angle=0.25, taper=0.07)
+    found = of.loaded(800.0, 600.0, speed=200.0, cage_angles=[0.1])
+    along = np.array([np.sin(0.215), np.cos(0.215)])  # outwards and towards the large end
+    outer, inner = (np.array([np.cos(angle), -np.sin(angle)]) for angle in (0.25, 0.18))
+    pushed = found.inner_load * (inner @ along) - found.outer_load * (outer @ along)
+    pushed += of.centrifugal_force(200.0) * along[0]
+    np.testing.assert_allclose(found.rib_force, pushed, rtol=1e-12)
+
+
 def test_the_stiffness_with_a_rib_is_the_derivative_of_its_forces():
     """Of a fast tilted bearing: central differences of what moments and forces the ring's place needs."""
     of = NU205.with_(contact_angle=0.25, taper=0.07, rib_stiffness=5e7)

@@ -294,8 +294,9 @@ class RollerBearing:
 
     @property
     def flung_along(self) -> float:
-        """Centrifugal force along the axis of a tapered roller over that along its normal, tan (α − β)."""
-        return math.tan(self.contact_angle - 0.5 * self.taper) if self.taper else 0.0
+        """Centrifugal force along the axis of a tapered roller over that along its normal."""
+        along = math.sin(self.contact_angle - 0.5 * self.taper) / math.cos(self.contact_angle)
+        return along if self.taper else 0.0
 
     def rib_force(self, inner: Array, outer: Array, lift: ArrayLike = 0.0) -> Array:
         """Force of the rib on tapered rollers along their axis.
