@@ -225,6 +225,16 @@ CASE = {
 }
 
 
+TAPER = {"name": "NU205", "contact_angle": "14 deg", "taper": "4 deg", "rib_stiffness": "300 MN/m"}
+
+
+@pytest.mark.parametrize(("stiffness", "told"), [("300 MN/m", False), ("300 kN/m", True), ("300 GN/m", True)])
+def test_a_rib_that_is_hardly_meant_is_doubted(stiffness, told):
+    case = as_case(CASE | {"axial": "1 kN", "bearing": TAPER | {"rib_stiffness": stiffness}})
+    said = [str(each.message) for each in prepare_bearing(case).caught]
+    assert any(each.startswith("bearing.rib_stiffness = ") for each in said) == told
+
+
 TILTED = {"tilt": "-1 mrad", "rotating_tilt": "0.2 mrad"}
 
 
@@ -260,6 +270,12 @@ test_tilts_that_cannot_be_are_refused = refusals(
     ({"tilt": "0.2 rad"}, "tilt: received 0.2 rad; allowed: -0.1 rad to 0.1 rad. Shafts tilt less"),
     ({"tilt": "20 mrad", "rotating_tilt": "90 mrad"}, "rotating_tilt: received 0.11 rad; allowed: below 0.1"),
     ({"tilt": "1 mm"}, "tilt: received '1 mm'"),
+    (
+        {"axial": "1 kN", "bearing": TAPER | {"taper": "4 rad"}},
+        "bearing.taper: received .4 rad.; allowed: an angle",
+    ),
+    ({"bearing": {"name": "NU205", "taper": "4 deg"}}, "bearing.contact_angle: received 0° of rollers that"),
+    ({"bearing": {"name": "NU205", "rib_stiffness": "1 MN/m"}}, "bearing.rib_stiffness: "),
     ({"tilt": "60 mrad"}, "radial: received half a width of .*Lower the load or the tilt"),
     of=lambda changes: as_case(CASE | changes),
     error=CaseError,

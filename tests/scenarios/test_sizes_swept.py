@@ -96,6 +96,7 @@ WITH = {
         "bearing preload": {"preload": "50 N"},
         "bearing angle": {"contact_angle": "15 deg"},
         "bearing": {"clearance": "10 um"},
+        "bearing arch": {"arch_angle": "35 deg"},
         "shaft": {"mass": "1 kg"},
         "housing": {"radial_stiffness": "50 MN/m", "axial_stiffness": "50 MN/m"},
         "lubricant": {"viscosity_40": "68 mm^2/s", "viscosity_100": "9 mm^2/s"},
@@ -129,8 +130,8 @@ OF_OTHERS = {
 }
 """No wheel is drawn that rolls over a beam, and no beam has poles; rollers slide nowhere."""
 OF_A_FILE = {"structure.nodes", "structure.mass", "structure.inertia", "track.pad_preload"}
-AT_REST = {"bearing.arch_angle"}
-"""No bearing with it runs."""
+CARRIED_AXIALLY = {"bearing.taper", "bearing.rib_stiffness"}
+"""Tapered rollers carry no radial load alone: they are tried where they run."""
 LONG_WORK = {"contact.samples"}
 """They are doubted once their textures are made, which takes long."""
 HARMLESS_SMALL = {
@@ -198,7 +199,7 @@ def swept():
     """Each kind with keys of numbers that no kind before it has, or that stand in its contexts."""
     known = set()
     for kind in PRESETS:
-        left_out = OF_A_FILE | AT_REST | LONG_WORK | OF_OTHERS.get(kind, set())
+        left_out = OF_A_FILE | CARRIED_AXIALLY | LONG_WORK | OF_OTHERS.get(kind, set())
         own = [each for each in numbers_of(kind) if each.dotted not in left_out]
         own = [each for each in own if role(each.dotted) not in known or context(kind, each.dotted)]
         own = list({role(each.dotted): each for each in reversed(own)}.values())

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping
+from itertools import product
 
 import numpy as np
 
@@ -373,13 +374,14 @@ def doubt_bearing(case: BearingUnderLoad) -> None:
 
 
 def _doubt_springs(case: BearingUnderLoad, contact: float) -> None:
-    """Warn of springs that hold a ring as none does, beside the stiffness of a contact, N/m."""
-    for name, ring in (("shaft", case.shaft), ("housing", case.housing)):
-        for key in ("radial_stiffness", "axial_stiffness"):
-            share = getattr(ring, key) / contact
-            if share and not LOOSE_SPRING <= share <= RIGID_SPRING:
-                told = f"a contact of the bearing has {written(contact, 'N/m', 'MN/m', exactly=False)}"
-                _warn(f"{name}.{key}", getattr(ring, key), "N/m", told, "MN/m")
+    """Warn of springs that hold a ring or a roller as none does, beside the stiffness of a contact, N/m."""
+    rings = product((("shaft", case.shaft), ("housing", case.housing)), ("radial", "axial"))
+    springs = {f"{name}.{way}_stiffness": getattr(ring, f"{way}_stiffness") for (name, ring), way in rings}
+    springs["bearing.rib_stiffness"] = getattr(case.bearing.bearing, "rib_stiffness", None)
+    for key, stiffness in springs.items():
+        if stiffness and not LOOSE_SPRING <= stiffness / contact <= RIGID_SPRING:
+            told = f"a contact of the bearing has {written(contact, 'N/m', 'MN/m', exactly=False)}"
+            _warn(key, stiffness, "N/m", told, "MN/m")
 
 
 def _doubt_damping(key: str, damping: float, contact: Hertz, load: float, mass: float) -> None:
