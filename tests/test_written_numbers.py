@@ -20,6 +20,7 @@ from asperity.written_numbers import (
     plain,
     rounded,
     unbroken,
+    with_article,
 )
 
 
@@ -61,6 +62,8 @@ def test_ends_counts_and_forces_are_in_words():
     assert [count_of(n, "sample") for n in (0, 1, 8)] == ["0 samples", "1 sample", "8 samples"]
     things = ("frequency", "bay", "pass")
     assert [count_of(2, thing) for thing in things] == ["2 frequencies", "2 bays", "2 passes"]
+    named = ("study", "optimisation", "envelope line")
+    assert [with_article(each) for each in named] == ["a study", "an optimisation", "an envelope line"]
     assert [in_newtons(each) for each in (5.04, 65e3, 999.6)] == ["5.04 N", "65 kN", "1000 N"]
 
 

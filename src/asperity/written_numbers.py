@@ -72,6 +72,11 @@ def between(low: str, high: str) -> str:
     return low if low == high else f"{low} to {high}"
 
 
+def with_article(noun: str) -> str:
+    """A thing, with the article that its first letter asks for: ``"an optimisation"``."""
+    return f"{'an' if noun[0].lower() in 'aeio' else 'a'} {noun}"
+
+
 def capital(sentence: str) -> str:
     """Begin a sentence with a capital; names in it stay as they are written: ``"CNOSSOS-EU"``.
 

@@ -326,6 +326,7 @@ test_signals_that_are_none = refusals(
         1e308 * np.sin(np.arange(9.0)),
         r"values of up to 9.89·10³⁰⁷; allowed: 1·10⁻⁶⁰ to 1·10⁶⁰ at most",
     ),
+    ("a.txt", "\n".join(f"{(-1) ** n}e308 {n}" for n in range(9)).encode(), "2 columns"),  # and no word more
     ("a.npy", 1e-300 * np.sin(np.arange(9.0)), "values of up to 9.89·10⁻³⁰¹"),
     (
         "a.uff",

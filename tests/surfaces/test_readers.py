@@ -344,6 +344,27 @@ REFUSED = [  # file, its contents, hints, and what the message says
 ]
 
 
+LARGEST = np.where(np.arange(40) % 2, 1e308, -1e308)
+
+
+@pytest.mark.parametrize(
+    ("file", "contents"),
+    [
+        ("a.txt", b"\n".join(b"%.3e" % value for value in LARGEST)),
+        ("places.txt", b"\n".join(b"%.3e %d" % pair for pair in enumerate(LARGEST))),
+        ("places_beyond.txt", b"\n".join(b"%.3e %d" % (value, n) for n, value in enumerate(LARGEST))),
+        ("a.npy", npy(LARGEST)),
+        ("a.npz", zipped(("z.npy", npy(LARGEST)))),
+        ("a.mat", matlab(z=LARGEST)),
+        ("a.sdf", sdf_binary(np.tile(0.1 * LARGEST, (2, 1)), 7)),
+    ],
+)
+def test_the_largest_numbers_there_are_end_in_a_message(write, file, contents):
+    hints = {} if file == "a.sdf" else NM | ({"pixel_unit": "um", "pixel": None} if "places" in file else {})
+    with pytest.raises(InputError, match=r"every point is missing|missing or infinite coord|of 1·10⁹⁹"):
+        read_surface(write(file, contents), **hints)
+
+
 test_what_a_file_does_not_say_is_asked_for = refusals(
     *REFUSED,
     of=lambda name, contents, hints, write: read_surface(write(name, contents), **hints),

@@ -14,6 +14,7 @@ from asperity import text_files
 from asperity.arguments import FilePath
 from asperity.case.form import described_value
 from asperity.errors import InputError
+from asperity.written_numbers import with_article
 
 LARGEST_CASE = 2**20  # bytes
 MOST_PARTS = 20
@@ -33,13 +34,13 @@ def read_definition(path: FilePath, what: str, remedy: str) -> str:
 
     `what` it holds, and the remedy if it is missing, are for messages.
     """
-    allowed = f"the path of a {what} file (TOML)"
+    allowed = f"the path of {with_article(what)} file (TOML)"
     return text_files.read_text(Path(path), str(path), allowed, largest=LARGEST_CASE, remedy=remedy)
 
 
 def read_toml(text: str, what: str, source: FilePath) -> dict[str, Any]:
     """Read TOML; what the text is, and where it comes from, are for messages."""
-    allowed = f"a {what} in TOML"
+    allowed = f"{with_article(what)} in TOML"
     text = text.replace("\r\n", "\n")
     if _MANY_PARTS.search(text):
         raise InputError(str(source), f"a key of more than {MOST_PARTS} parts", allowed)

@@ -22,7 +22,7 @@ from asperity.parameters import FROM_PYTHON
 from asperity.spectra import a_weighting
 from asperity.text_files import lines_of_cells, number_in, read_text, refuse_decimal_commas
 from asperity.units import quantity, unit_in, unit_in_brackets
-from asperity.written_numbers import count_of, in_a_row
+from asperity.written_numbers import count_of, in_a_row, with_article
 
 MOST_RECORDS = 1000
 """Measurements of one file."""
@@ -178,7 +178,7 @@ def _record(
     if of.name in DIRECTIONS.values() and direction:
         of = observable(DIRECTIONS[one_of(f"direction in {path.name}", direction.lower(), DIRECTIONS)])
     if of.decade and (held <= 0.0).any():
-        raise InputError(path.name, f"a {of.name} of {held[held <= 0.0][0]:g}", "greater than 0")
+        raise InputError(path.name, f"{with_article(of.name)} of {held[held <= 0.0][0]:g}", "greater than 0")
     held = held - a_weighting(centres) if weighted and of.units.startswith("dB re 20") else held
     conditions = conditions_of(case, told)
     said = {title: (cell,) for title, cell in every.items()}

@@ -9,7 +9,7 @@ import numpy as np
 from asperity.arguments import Array, require
 from asperity.case.table_headings import unit_of
 from asperity.errors import InputError, OutOfRangeWarning
-from asperity.surfaces.readers.positions import places
+from asperity.surfaces.readers.positions import LARGEST, places
 from asperity.units import factor
 from asperity.written_numbers import rounded
 
@@ -76,6 +76,8 @@ def _rate_and_gaps(times: Array, source: str) -> tuple[float | None, tuple[tuple
     others."""
     if len(times) > 2 and (step := _even_spacing(times, source)):
         return 1.0 / step, ()
+    if not (np.abs(times) < LARGEST).all():
+        return None, ()
     steps = np.diff(times)
     typical = float(np.median(steps)) if steps.size else 0.0
     after = 1 + np.flatnonzero(np.abs(steps - typical) > 0.5 * np.abs(typical))

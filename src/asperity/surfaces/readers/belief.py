@@ -19,6 +19,8 @@ spectrum of ISO 3095 has 1e-3. A slope of 2 is 63 degrees, more than most optica
 10 is 84 degrees. An optical flat of a twentieth of a wavelength over 100 mm has some 3e-7; 1e-8 are 10 nm
 over a metre, as the best straightedges have.
 """
+MOST_TOLD = 1e99
+"""Height, m, or slope as which any larger one is told."""
 FIELDS, USUAL_FIELDS = 10.0, 1.0
 """Lesser side of a map, m: fields of microscopes are below 10 mm, stitched ones below some 0.3 m."""
 SPACINGS = (1e-11, 1.0)
@@ -77,9 +79,10 @@ def _slope_along(heights: Array, spacing: float) -> float:
     """Typical slope along the first axis; zero where all neighbours are alike, or none has a height."""
     columns = heights.reshape(len(heights), -1)
     columns = columns[:, :: max(1, math.ceil(columns.size / MOST_POINTS))]
-    steps = np.abs(np.diff(columns[: 2 * MOST_POINTS], axis=0))
+    with np.errstate(over="ignore"):
+        steps = np.abs(np.diff(columns[: 2 * MOST_POINTS], axis=0))
     steps = steps[steps > 0.0]
-    return _NORMAL * float(np.median(steps)) / spacing if steps.size else 0.0
+    return min(_NORMAL * float(np.median(steps)) / spacing, MOST_TOLD) if steps.size else 0.0
 
 
 def _over_its_width(section: HeightMap | Profile) -> float | None:
@@ -209,7 +212,8 @@ def _sample(heights: Array) -> Array:
 
 def _rms(surface: HeightMap | Profile) -> float:
     sample = _sample(surface.heights)
-    return float(sample.std()) if sample.size else 0.0
+    with np.errstate(over="ignore"):
+        return min(float(sample.std()), MOST_TOLD) if sample.size else 0.0
 
 
 def _far_from_others(heights: Array) -> str:

@@ -30,6 +30,8 @@ WIDEST_GAP = 0.1
 """Largest share of a section without a point."""
 MOST_TIMES = 8
 """Places of a section that was made even, over its points, at most."""
+LARGEST = 1e60
+"""Size of a coordinate in any unit."""
 JITTER = 4.0
 """Least ratio of distances between the lines of a grid to those of coordinates within one of them."""
 Index = NDArray[np.intp]
@@ -191,7 +193,7 @@ def places(coordinates: Array, what: str) -> tuple[Index, float]:
 
 def are_even(coordinates: Array) -> bool:
     """Whether numbers, five or more, rise or fall evenly, as positions do and heights do not."""
-    if len(coordinates) < FEWEST_EVEN or not np.isfinite(coordinates).all() or not _rises(coordinates):
+    if len(coordinates) < FEWEST_EVEN or not _known(coordinates) or not _rises(coordinates):
         return False
     return bool(np.ptp(coordinates)) and _near(np.sort(coordinates), np.arange(len(coordinates)))
 
@@ -292,6 +294,10 @@ def half_digits(coordinates: Array) -> Iterator[Array]:
 
 
 def _refuse_unknown(coordinates: Array, what: str) -> None:
-    finite = np.isfinite(coordinates).all()
     received = "missing or infinite coordinates"
-    require(finite, what, received, "a coordinate for each point", CHECK)
+    require(_known(coordinates), what, received, "a coordinate for each point", CHECK)
+
+
+def _known(coordinates: Array) -> bool:
+    """Whether all are numbers whose distances are numbers, too; none of a place is larger."""
+    return bool((np.abs(coordinates) < LARGEST).all())
