@@ -61,6 +61,11 @@ def test_a_device_on_which_nothing_was_ever_run_is_told(monkeypatch):
             "surface.corrugation_wavelength = 40000 mm: it is passed at 0.025 Hz",
         ),
         (BALL | {"surface": BALL["surface"] | {"longest": "0.4 m"}}, "surface.longest = 400 mm: 0.07 m are"),
+        (
+            BALL | {"laws": ["linear"], "contact": {}, "ball": {"load": "40 kN"}},
+            r"ball.load = 40 kN: smooth bodies press with 5\.\d+ GPa, and dents begin",
+        ),
+        (WHEEL | {"speed": "200 m/s"}, "speed = 720 km/h: no train has run faster than 575 km/h"),
         (WHEEL | {"track": {"ballast_stiffness": "150 kN/m"}}, "The rail yields by 4\\d.* mm under a wheel"),
         (
             BEARING | {"inner_raceway": {"roughness": "50 nm", "longest": "500 mm"}},

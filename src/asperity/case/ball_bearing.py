@@ -46,7 +46,7 @@ from asperity.speeds import FEWEST_TURNS, SpeedCourse, covered, reached
 from asperity.structures.ball_bearing import PARTS, BallBearing, Kinematics
 from asperity.structures.modal import HIGHEST
 from asperity.units import written
-from asperity.written_numbers import rounded
+from asperity.written_numbers import in_newtons, rounded
 
 if TYPE_CHECKING:
     from asperity.contact.film import Film
@@ -255,6 +255,19 @@ class BearingUnderLoad(AnyCase):
         on_each: AroundKeys = getattr(self, self.called("balls"))
         return on_each
 
+    def _thrown_share(self) -> float:
+        """Axial force of balls that are thrown against a free outer ring, over the load that holds it.
+
+        In rolling both contacts of a ball have one angle, so that its force along them moves no ball aside.
+        """
+        of = self.bearing.bearing
+        angle = self.static.contact_angle
+        held = self.housing.axial_stiffness > 0.0 or not angle or not self.centrifugal
+        thrown = (
+            0.0 if held else of.balls * of.centrifugal_force(self.speed) * math.sin(angle) * math.cos(angle)
+        )
+        return thrown / (self.axial + of.preload) if thrown else 0.0
+
     @property
     def kinematics(self) -> Kinematics:
         """What turns how fast, without slip, at the contact angle of the load."""
@@ -418,6 +431,15 @@ class BearingUnderLoad(AnyCase):
                 f"less than {rounded(60.0 * leaving, 5)} 1/min, or a larger axial load or bearing.preload"
             )
             yield InputError("speed", received, allowed)
+        elif (share := self._thrown_share()) >= 1.0:
+            pushed = in_newtons(share * (self.axial + self.bearing.bearing.preload))
+            received = f"{rounded(60.0 * self.speed, 5)} 1/min, by which balls push the outer ring off with "
+            slower = f"less than {rounded(60.0 * self.speed / math.sqrt(share), 3)} 1/min"
+            allowed = f"{slower}, a larger axial load, or a housing.axial_stiffness"
+            remedy = "Both contacts of a ball keep one angle as it rolls."
+            if self.speed > self.bearing.bearing.fastest:
+                remedy += f' Is the speed in 1/min? Then write "{rounded(self.speed, 5)} 1/min".'
+            yield InputError("speed", f"{received}{pushed} along the axis", allowed, remedy)
         yield from self._problems_of_films()
         yield from self._problems_of_creep()
         yield from self._problems_of_grooves()

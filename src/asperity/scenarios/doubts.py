@@ -18,12 +18,15 @@ from asperity.reference.materials import material
 from asperity.rolling.steps import warn_if_coarse
 from asperity.scenarios.usual import OF_ANYTHING, OF_BEARINGS, OF_TRAINS, UNIT, unusual
 from asperity.speeds import slowest
+from asperity.structures.ball_bearing import STATIC_PRESSURE
 from asperity.structures.body import GRAVITY
 from asperity.structures.track import Track
 from asperity.structures.track_parameters import LAYERS
 from asperity.units import written
 from asperity.written_numbers import between, in_newtons, rounded
 
+FASTEST_TRAIN = 160.0
+"""m/s: no train has run faster than 574.8 km/h, in 2007."""
 HOLLOW = 0.01
 """Share of the mass of a solid ball of the same radius that nothing that rolls falls short of."""
 LIFTED = 0.5
@@ -101,6 +104,10 @@ def doubt_sizes(case: Case, over: object) -> None:
     if load < LIFTED * GRAVITY * carried:
         told = f"what rests on a contact weighs {in_newtons(GRAVITY * carried)}, so that something lifts it"
         _warn(f"{name}.load", load, "N", told)
+    pressure = case.smooth_contact.peak_pressure(case.smooth_contact.approach(load))
+    if case.contact.hardness is None and pressure > STATIC_PRESSURE:
+        told = f"smooth bodies press with {rounded(pressure / 1e9)} GPa, and dents begin in bearing steel at "
+        _warn(f"{name}.load", load, "N", f"{told}{STATIC_PRESSURE / 1e9:g} GPa (ISO 76)", "kN")
     _doubt_above(case)
     _doubt_damping("contact.damping", case.contact.damping, case.smooth_contact, load, mass)
     if surface.rms is not None and surface.rms < SMOOTHEST:
@@ -124,6 +131,8 @@ def doubt_sizes(case: Case, over: object) -> None:
         _doubt_beam(case, case.rolled_over)
     if isinstance(over, Track):
         _doubt_usual(case, OF_TRAINS, **{name: "wheel"})
+        if case.speed > FASTEST_TRAIN:
+            _warn("speed", float(case.speed), "m/s", "no train has run faster than 575 km/h", "km/h")
         _doubt_layers(over, case.over_name, load)
         _doubt_rail(over, case.over_name, over.mass_per_length)
         if over.sleeper_bending_stiffness is not None:
