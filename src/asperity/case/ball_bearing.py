@@ -262,11 +262,10 @@ class BearingUnderLoad(AnyCase):
         """
         of = self.bearing.bearing
         angle = self.static.contact_angle
-        held = self.housing.axial_stiffness > 0.0 or not angle or not self.centrifugal
-        thrown = (
-            0.0 if held else of.balls * of.centrifugal_force(self.speed) * math.sin(angle) * math.cos(angle)
-        )
-        return thrown / (self.axial + of.preload) if thrown else 0.0
+        load = self.axial + of.preload
+        if self.housing.axial_stiffness or not (angle and load and self.centrifugal):
+            return 0.0
+        return 0.5 * math.sin(2.0 * angle) * of.balls * of.centrifugal_force(self.speed) / load
 
     @property
     def kinematics(self) -> Kinematics:

@@ -50,6 +50,15 @@ def templates() -> tuple[str, ...]:
     return (*kinds(), *TEMPLATES)
 
 
+class WholeNumber(click.IntRange):
+    """A whole number between two, which are told in words."""
+
+    name = "integer"
+
+    def _describe_range(self) -> str:
+        return f"{self.min} to {self.max}"
+
+
 class Command(click.Command):
     """A command whose help ends with the examples of its docstring, where KIND is the first kind of case.
 
@@ -507,7 +516,7 @@ FIT = [
     click.Option(["--as", "what"], metavar="QUANTITY", help="What files hold, where no heading tells it."),
     click.Option(
         ["--starts"],
-        type=click.IntRange(1, 100),
+        type=WholeNumber(1, 100),
         help="Places from which is searched. [default: 8, of runs 1]",
     ),
 ]

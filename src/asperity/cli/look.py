@@ -6,7 +6,7 @@ from pathlib import Path
 import click
 
 from asperity.cli import commands
-from asperity.cli.commands import PATH, output
+from asperity.cli.commands import PATH, WholeNumber, output
 from asperity.cli.program import Document, commands_of, main
 from asperity.errors import InputError
 from asperity.terminal import say
@@ -18,7 +18,7 @@ _around = commands_of("Around it")
 @_look("A page in the browser: set cases, press, roll, watch, listen.", document=False)
 @click.option(
     "--port",
-    type=click.IntRange(0, 65535),
+    type=WholeNumber(0, 65535),
     default=0,
     help="Port of this machine. [default: one that is free]",
 )
