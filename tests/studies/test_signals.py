@@ -22,6 +22,7 @@ from asperity.studies.axes import AS_IT_IS
 from asperity.studies.recorded import read_record, read_signal
 from asperity.studies.sensor_path import through_path, with_noise
 from asperity.studies.signals import SignalSet
+from asperity.universal_files import Channel, universal_text
 from command_line import call
 from refusals import refusals
 from small_cases import BEARING
@@ -306,6 +307,8 @@ def test_the_content_of_a_record_decides_not_its_name(tmp_path):
     np.testing.assert_array_equal(read_signal(tmp_path / "a.bin", 12e3)[0], TIME)
 
 
+OF_NINE = universal_text([Channel("a", np.sin(np.arange(9.0)), 1e-4, "m/s2")]).encode()
+
 test_signals_that_are_none = refusals(
     (
         "a.bin",
@@ -332,6 +335,14 @@ test_signals_that_are_none = refusals(
         "a.uff",
         b"    -1\n    15\n         1         1         1        11  0.0E+00  0.0E+00  0.0E+00\n    -1\n",
         "received datasets 15, 0 of them time responses; allowed: a time response in a dataset 58",
+    ),
+    *(
+        (
+            "a.uff",
+            OF_NINE.replace(b"         9         1", b"%10d         1" % told),
+            f"{told} samples, by its head",
+        )
+        for told in (8, 10, 999999999)
     ),
     of=recorded,
 )

@@ -255,6 +255,25 @@ class BearingUnderLoad(AnyCase):
         on_each: AroundKeys = getattr(self, self.called("balls"))
         return on_each
 
+    def _problems_of_speed(self, leaving: float | None) -> Iterator[InputError]:
+        """Balls that leave the inner ring at a speed, turns per second, or push the outer one off."""
+        if leaving is not None:
+            upto = "up to " * isinstance(self.speed, SpeedCourse)
+            received = f"{upto}{rounded(60.0 * self.speed, 5)} 1/min, which lifts balls off the inner ring"
+            allowed = (
+                f"less than {rounded(60.0 * leaving, 5)} 1/min, or a larger axial load or bearing.preload"
+            )
+            yield InputError("speed", received, allowed)
+        elif (share := self._thrown_share()) >= 1.0:
+            pushed = in_newtons(share * (self.axial + self.bearing.bearing.preload))
+            received = f"{rounded(60.0 * self.speed, 5)} 1/min, by which balls push the outer ring off with "
+            slower = f"less than {rounded(60.0 * self.speed / math.sqrt(share), 3)} 1/min"
+            allowed = f"{slower}, a larger axial load, or a housing.axial_stiffness"
+            remedy = "Both contacts of a ball keep one angle as it rolls."
+            if self.speed > self.bearing.bearing.fastest:
+                remedy += f' Is the speed in 1/min? Then write "{rounded(self.speed, 5)} 1/min".'
+            yield InputError("speed", f"{received}{pushed} along the axis", allowed, remedy)
+
     def _thrown_share(self) -> float:
         """Axial force of balls that are thrown against a free outer ring, over the load that holds it.
 
@@ -423,22 +442,7 @@ class BearingUnderLoad(AnyCase):
             heavier = "radial" if self.radial >= self.axial else "axial"
             yield error.about(heavier) if error.what in ("load", "contact") else error
             return
-        if leaving is not None:
-            upto = "up to " * isinstance(self.speed, SpeedCourse)
-            received = f"{upto}{rounded(60.0 * self.speed, 5)} 1/min, which lifts balls off the inner ring"
-            allowed = (
-                f"less than {rounded(60.0 * leaving, 5)} 1/min, or a larger axial load or bearing.preload"
-            )
-            yield InputError("speed", received, allowed)
-        elif (share := self._thrown_share()) >= 1.0:
-            pushed = in_newtons(share * (self.axial + self.bearing.bearing.preload))
-            received = f"{rounded(60.0 * self.speed, 5)} 1/min, by which balls push the outer ring off with "
-            slower = f"less than {rounded(60.0 * self.speed / math.sqrt(share), 3)} 1/min"
-            allowed = f"{slower}, a larger axial load, or a housing.axial_stiffness"
-            remedy = "Both contacts of a ball keep one angle as it rolls."
-            if self.speed > self.bearing.bearing.fastest:
-                remedy += f' Is the speed in 1/min? Then write "{rounded(self.speed, 5)} 1/min".'
-            yield InputError("speed", f"{received}{pushed} along the axis", allowed, remedy)
+        yield from self._problems_of_speed(leaving)
         yield from self._problems_of_films()
         yield from self._problems_of_creep()
         yield from self._problems_of_grooves()

@@ -13,6 +13,7 @@ from asperity.sandbox import Answer, sandboxed
 from asperity.surfaces.readers import arrays
 from asperity.surfaces.readers.hints import SPELLING, Spelling, spelled
 from asperity.universal_files import TIME_RESPONSE
+from asperity.written_numbers import count_of
 
 Found = tuple[NDArray[Any], list[str], float | None]
 """Values (n,) or (n, columns), titles of the columns, and the sampling rate, Hz, where it is stated."""
@@ -63,6 +64,9 @@ def responses_of_universal(path: str, array: str | None, source: str, spelling: 
     chosen = _chosen(names, array, source, spelling)
     found = responses[names.index(chosen)]
     values = np.asarray(found["data"])
+    told = int(found["num_pts"])
+    received, remedy = f"{count_of(told, 'sample')}, by its head, in {len(values)}", "Copy the file again."
+    require(told == len(values), source, received, "as many as it holds", remedy)
     if found["abscissa_spacing"] == 1:
         return [[], 1.0 / float(found["abscissa_inc"])], [values]
     return [["time (s)", chosen], None], [np.column_stack([found["x"], values])]
