@@ -74,6 +74,7 @@ def test_loads_tones_and_waviness(drawn):
         r"9 balls of 7.94 mm, pitch diameter 39.04 mm, grooves of 0.52 D \(inner\)",
         r" 0° +inner ring +68.15 +0.0° +0.057 +0.536 +1.06 +0° +outer ring +68.38 .* −40° +inner ring +20.79",
         "no film of lubricant",
+        r" 120° +inner ring +– +– +– +– +– ",
         r"2 to 3 of 9 balls touch the inner ring", r"outer ring +107.4 +3.5848 ",
         r"inner ring +162.2 +5.4152 .* ± 29.95 as it turns", r"inner ring +10 +– +192.1 ",
         r"ball +2 +141.2 +129.2, 153.1 "
