@@ -119,6 +119,8 @@ def test_real_areas_on_whole_cells_are_less_what_stands_out_beyond_rims():
     exact = HalfSpace(fine.shape, 0.025, 1.0, cells="covered").solve(fine, approach=0.3)
     whole = HalfSpace(middles.shape, 0.1, 1.0).solve(middles, approach=0.3)
     assert exact.real_area == exact.area
+    lone = HalfSpace((1, 1), 0.1, 1.0).solve(np.zeros((1, 1)), approach=0.1)
+    assert lone.real_area == pytest.approx((1.0 - (math.pi - 1.0 + math.log(2.0)) / 6.0) * 0.1**2)
     assert abs(whole.real_area / exact.area - 1.0) < 0.3 * (whole.area / exact.area - 1.0)
 
 
