@@ -175,7 +175,7 @@ class RollerBearingUnderLoad(BearingUnderLoad):
         sliding |= {f"creep.{name}": each for name, each in self.creep.given().items()}
         for name, given in sliding.items():
             if given is not None:
-                allowed = "none: rollers slide nowhere but at ribs, which are not in it"
+                allowed = "none: rollers slide nowhere but at ribs, of which only the force is in it"
                 remedy = 'Leave it out; kind = "ball-bearing" has friction.'
                 yield InputError(name, f"{given:g}", allowed, remedy)
                 return
