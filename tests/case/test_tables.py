@@ -347,6 +347,10 @@ def test_a_mobility_in_decibels_is_asked_for_as_a_value(tmp_path):
     with pytest.raises(InputError, match="kg") as told:
         measured.read_mobility(tmp_path / "y.csv")
     assert "10^(L/20)" not in str(told.value)
+    (tmp_path / "y.csv").write_text("f (Hz), level (dB re 1 N)\n100, 10\n125, 11\n160, 12\n")
+    with pytest.raises(InputError, match="level") as told:
+        measured.read_band_levels(tmp_path / "y.csv")
+    assert "10^(L/20)" not in str(told.value)
 
 
 OMEGA = 2.0 * np.pi * np.array([100.0, 200.0, 400.0])

@@ -288,10 +288,28 @@ def test_a_search_where_runs_jump_begins_within_a_factor_of_ten(ball_bearing, ra
     values = jumping_lines(case.with_(axial=400.0))[bearing.ENVELOPE][0][at.astype(int) - 1]
     asperity.fit(case, Measured("envelope line", at, values), starts=4)
     loads = np.array([each.axial for each in calls])
+    apart = np.log(loads[:, None] / loads)
+    assert (np.abs(apart - 0.15) < 1e-9).any()  # slopes are taken over more than the jumps
+    assert not (np.abs(apart - 0.02) < 1e-9).any()
     assert loads.min() >= 15.0
     assert loads.max() <= 2600.0
     assert loads.min() < 40.0
     assert loads.max() > 1200.0
+    assert observables.observable("envelope line").chance(
+        {}, Measured("envelope line", at, values)
+    ) == pytest.approx(0.25)
+
+
+def test_a_search_where_runs_jump_begins_at_two_places(ball_bearing, ran):
+    """At the case and at the best of six loads that are spread about it."""
+    told = []
+    ran(jumping_lines)
+    case = ball_bearing.with_(envelope_band=(2e3, 6e3))
+    at = np.array([50.0, 100.0, 200.0, 300.0])
+    values = jumping_lines(case.with_(axial=400.0))[bearing.ENVELOPE][0][at.astype(int) - 1]
+    data = Measured("envelope line", at, values)
+    asperity.fit(case, data, progress=lambda done, total, message: told.append((total, message)))
+    assert (3, "search for 1 key") in told
 
 
 def test_the_band_of_the_envelope_that_a_run_chose_stays(ball_bearing, ran):
