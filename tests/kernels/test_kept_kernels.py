@@ -218,6 +218,20 @@ def test_without_private_names_of_numba_plain_kernels_serve_and_that_is_told(fol
     assert not files(folder)
 
 
+TYPES_UNKNOWN = """
+import warnings
+from numba.core.types.functions import BaseFunction
+del BaseFunction.get_call_type
+warnings.simplefilter("ignore")
+from asperity.kernels import options
+print(options.PLAIN)
+"""
+
+
+def test_without_the_types_of_calls_kernels_are_plain(module):
+    assert apart(TYPES_UNKNOWN, module, **os.environ) == "True"
+
+
 def test_what_only_kernels_call_is_optimised_and_machine_code_inside_of_them_alone(
     folder, module, monkeypatch
 ):
@@ -287,6 +301,8 @@ def test_an_operator_on_numbers_is_typed_once_and_needless_passes_are_left_out(f
     on_numbers = [each for each in asked if each[0] in options.OPERATORS]
     assert any(each[0] is operator.add for each in on_numbers)
     assert len(on_numbers) == len(set(on_numbers))
+    twice = options.compiled(**options.LOOP)(lambda x, n: (x + x, n + n))
+    assert [type(each) for each in twice(1.5, 2)] == [float, int]
     of_numba = listener.seen["as_numba_has_it.<locals>.<lambda>"]
     assert len(of_numba) - len(listener.seen["inlined"]) == len(options.NEEDLESS)
     assert BaseFunction.get_call_type is before

@@ -83,7 +83,7 @@ try:
         [hasattr(CPUTargetOptions, name) for name in HIDDEN]
         + [hasattr(CompileResult, name) for name in ("_reduce", "_rebuild")]
         + [hasattr(JITCodeLibrary, name) for name in STEPS]
-        + [hasattr(BaseFunction, "get_call_type"), hasattr(Compiler, "define_pipelines")]
+        + ["get_call_type" in vars(BaseFunction), hasattr(Compiler, "define_pipelines")]
     )
 except ImportError:
     CPUDispatcher = NullCache = Compiler = JITCodeLibrary = object  # type: ignore[assignment,misc]
