@@ -104,7 +104,7 @@ def test_friction_of_the_case_falls_in_time_and_at_rest():
 
 @pytest.mark.parametrize(
     ("speed", "friction", "grade"),
-    [("1800 1/min", 0.05, None), ("30000 1/min", 0.05, Grade.WARNING), ("60000 1/min", 0.02, Grade.OUT)],
+    [("1800 1/min", 0.05, None), ("30000 1/min", 0.05, Grade.WARNING), ("40000 1/min", 0.02, Grade.OUT)],
 )
 def test_balls_that_gyrate_beyond_what_is_computed_are_told(speed, friction, grade):
     """The moment goes with the square of the speed; friction holds what it does."""
