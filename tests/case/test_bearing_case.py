@@ -79,6 +79,13 @@ test_what_no_raceway_has_is_refused = refusals(
 
 
 @pytest.mark.parametrize(
+    "keys", [{"housing": {"axial_stiffness": "10 MN/m"}}, {"centrifugal": False}, {"axial": "150 N"}]
+)
+def test_an_outer_ring_that_is_held_or_loaded_more_is_not_pushed_off(keys):
+    assert not list(as_case(CASE | {"speed": "500 Hz"} | keys).problems())
+
+
+@pytest.mark.parametrize(
     ("keys", "told"),
     [
         ({"speed": "450 Hz"}, r'speed = 450 Hz is 27000 1/min, 1.1·10⁶.* Then write "450 1/min"'),

@@ -161,6 +161,11 @@ SAID = [
 ]
 
 
+def test_numbers_that_begin_with_zeros_are_whole_ones_beside_decimal_points(read):
+    heights = read("01,2.5,3.5,4.5\n-02,2.5,0.5,4.5\n", **HINTS).heights
+    np.testing.assert_allclose(heights, 1e-6 * np.array([[1.0, 2.5, 3.5, 4.5], [-2.0, 2.5, 0.5, 4.5]]))
+
+
 test_what_is_wrong_is_said = refusals(
     *SAID,
     of=lambda content, hints, read: read(content, **hints),
