@@ -54,6 +54,17 @@ def test_a_record_that_a_rub_may_hide_a_fault_in_says_so_and_is_no_surer_than_ev
     assert found.confidence > 0.9
 
 
+@pytest.mark.parametrize("part", ["ball", "inner", "outer"])
+def test_a_part_whose_tone_is_close_to_a_multiple_of_a_loud_shaft_is_named(part):
+    """Of a 6203 at 9 degrees 2 f_b is 3.98, f_i 4.93 and f_o 3.07 times the speed, all within 2 % of a
+    multiple: where the lines of the shaft are says which."""
+    for seed in range(3):
+        signal = faulty_signal(part, SPEED, RATE, 2.0, bearing="6203", angle=0.15, noise=0.1, seed=seed)
+        clipped = np.clip(signal, -0.25, 0.25) + 0.2 * lines(SPEED, range(1, 9))
+        found = diagnose(clipped, RATE, TONES["6203"], SPEED)
+        assert [each.part for each in found.parts] == [part]
+
+
 @pytest.mark.parametrize("times", [2, 3])
 def test_an_envelope_with_the_lines_of_the_shaft_and_of_a_part_of_its_speed_holds_no_blows(times):
     """As of a sound measured bearing whose band, after resampling by 4/5, was another one: lines of 0.43 at

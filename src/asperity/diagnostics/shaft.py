@@ -23,6 +23,8 @@ MAINS = (50.0, 60.0, 100.0, 120.0)
 """Hz, at which motors and inverters hum."""
 AS_HIGH = 0.7
 """Share of the height of a line that others have which are one comb with it."""
+AS_CLEAR = 0.8
+"""Share of the support of a part's speed that the speed of a rub has whose multiples look like the part."""
 SURELY = 25.0
 """Support of a part at another speed whose blows come once in a turn of the shaft, as those of a rub."""
 
@@ -106,9 +108,15 @@ def _is_turn(each: Hypothesis, told: float, resolution: float) -> bool:
 
 
 def _of_turns(record: BearingRecord, each: Hypothesis, speed: float) -> bool:
-    """Whether the tone of a part is a multiple of a shaft's speed, whose own lines are as high: of a rub."""
+    """Whether the tone of a part is a multiple of a shaft's speed, whose own lines are as high: of a rub.
+
+    Of a part that has nearly such a tone, lines of the shaft are clearer where the part has them.
+    """
     order = round(each.tone / speed)
     if order < 2 or not at_speed(each.tone / order, speed):
+        return False
+    of_turns, of_part = record.supports(np.array([each.tone / order, each.speed]))
+    if of_turns < max(SUPPORTED, AS_CLEAR * of_part):
         return False
     view = max(record.envelopes, key=lambda view: view.depth(each.tone))
     own, turned = (view.lines_of(tone)[1] for tone in (each.tone, each.tone / order))
