@@ -5,13 +5,14 @@ import pytest
 from scipy.signal import resample, resample_poly
 
 from asperity.diagnostics import Hypothesis, diagnose, diagnosis_sentence
-from asperity.diagnostics.shaft import has_own_lines
+from asperity.diagnostics.shaft import has_own_lines, of_shaft_or_mains
 from asperity.structures.ball_bearing import BallBearing
 from faulty_signals import GEOMETRIES, faulty_signal, orders
 
 RATE, SPEED = 12_000.0, 29.3
 TONES = {name: BallBearing.named(name).tones() for name in GEOMETRIES}
 TIME = np.arange(24_000) / RATE
+NOISE = np.random.default_rng(5).normal(size=TIME.size)
 
 
 def lines(speed, multiples):
@@ -90,6 +91,13 @@ def test_half_and_a_third_of_a_speed_have_no_lines_of_their_own():
             has_own_lines(record, Hypothesis("outer", share * SPEED, tone, 3.0, 20.0, 0.5), TONES["6205"])
             is own
         )
+
+
+@pytest.mark.parametrize(("support", "of_shaft"), [(20.0, True), (30.0, False)])
+def test_blows_once_in_a_turn_are_a_part_at_another_speed_only_where_much_speaks_for_it(support, of_shaft):
+    record = diagnose(lines(SPEED, range(1, 11)) + 0.1 * NOISE, RATE, TONES["6205"], SPEED).record
+    each = Hypothesis("inner", SPEED / orders("6205")["inner"], SPEED, 3.0, support, 0.5)
+    assert of_shaft_or_mains(record, each, SPEED, 0.5, seen=True) is of_shaft
 
 
 @pytest.mark.parametrize("seed", range(3))
