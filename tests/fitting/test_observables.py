@@ -401,3 +401,9 @@ test_what_a_case_lacks_is_said = refusals(
         None,
     ),
 )
+
+
+def test_the_value_of_the_case_is_told_though_the_search_begins_within_limits(ball_bearing):
+    free = free_key(ball_bearing, "axial", (300.0, 900.0))
+    assert (free.before, free.start) == (200.0, 300.0)
+    assert free.words(free.before) == "200 N"

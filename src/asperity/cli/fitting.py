@@ -131,7 +131,7 @@ def _say(found: Fitted) -> None:
     rows = []
     for each in found.estimates:
         interval = " to ".join(map(each.free.words, each.interval)) if each.interval else "on its limit"
-        before = each.free.words(each.free.start) if each.free.given else "–"
+        before = each.free.words(each.free.before) if each.free.given else "–"
         rows.append((each.name, before, each.free.words(each.value), interval))
     say_table("Fitted", ("key", "before", "fitted", "95 %"), rows, width=120)
     for sentence in found.remarks:
@@ -147,7 +147,7 @@ def _document(found: Fitted) -> dict[str, Any]:
             {
                 "key": each.name,
                 "units": each.free.units,
-                "before": each.free.start if each.free.given else None,
+                "before": each.free.before if each.free.given else None,
                 "value": each.value,
                 "interval": each.interval,
                 "interval_stops": {
@@ -230,7 +230,7 @@ def _tables(found: Fitted) -> list[ReportTable]:
         " to ".join(map(each.free.words, each.interval)) if each.interval else "on its limit"
         for each in estimates
     ]
-    before = [each.free.words(each.free.start) if each.free.given else "–" for each in estimates]
+    before = [each.free.words(each.free.before) if each.free.given else "–" for each in estimates]
     columns = {
         "key": text_cells(each.name for each in estimates),
         "before": text_cells(before),

@@ -91,7 +91,9 @@ class Undetermined:
     def words(self) -> str:
         """What is not known, and what it was left at."""
         name = self.free.name
-        left = f"left at {self.free.words(self.free.start)}" if self.free.given else "left as the case has it"
+        left = (
+            f"left at {self.free.words(self.free.before)}" if self.free.given else "left as the case has it"
+        )
         if not self.others:
             return f"{name} is not determined by these data; {left}"
         names = in_a_row([other for other, _ in self.others])

@@ -32,7 +32,7 @@ class Free:
     name : str
         The dotted key, or what else it is called.
     start, low, high : float
-        Value of the case, and limits.
+        Value from which the search begins, that of the case within the limits, and these.
     logarithmic : bool
         Whether it is fitted by its logarithm; else by parts of `size`.
     size : float
@@ -47,6 +47,8 @@ class Free:
         Whether the case has a value of its own, or its named set.
     band : float, optional
         Wavelength of the one-third octave, m, of a spectrum in whose bands levels are fitted.
+    before : float
+        Value of the case, which may lie beyond the limits that the search begins within.
     """
 
     name: str
@@ -60,6 +62,7 @@ class Free:
     units: str
     given: bool = True
     band: float | None = None
+    before: float = math.nan
 
     def inward(self, value: float) -> float:
         """The value on the scale of the search."""
@@ -111,6 +114,7 @@ def free_key(case: AnyCase, dotted: str, within: Range | None = None) -> Free:
     except Unfit:
         start = math.nan
         given = False
+    before = start
     if within is None and dotted in USUAL:
         least, most, why = USUAL[dotted]
         low, high = (float(entry.read(_read(each, kind), FROM_PYTHON)) for each in (least, most))
@@ -132,7 +136,9 @@ def free_key(case: AnyCase, dotted: str, within: Range | None = None) -> Free:
     if not math.isfinite(start) or not low <= start <= high:
         start = math.sqrt(low * high) if logarithmic else 0.5 * (low + high)
     size = 1.0 if logarithmic else NEPER if entry.unit == "dB" else 0.25 * (high - low)
-    return Free(dotted, start, low, high, logarithmic, size, why, entry, str(entry.unit), given)
+    return Free(
+        dotted, start, low, high, logarithmic, size, why, entry, str(entry.unit), given, before=before
+    )
 
 
 # --- spectra, band by band
@@ -166,7 +172,9 @@ def free_bands(case: AnyCase, entry: CaseKey, heard: Range, within: Range | None
             name = f"{entry.dotted} at {rounded(1e3 * wavelength)} mm"
             start = min(max(level, low), high)
             why = "given here" if within else f"{WITHIN:g} dB about the case's"
-            found.append(Free(name, start, low, high, False, NEPER, why, entry, "dB", band=wavelength))
+            found.append(
+                Free(name, start, low, high, False, NEPER, why, entry, "dB", band=wavelength, before=level)
+            )
     require(found, entry.dotted, "no band that is heard in what was measured", "one band or more")
     return found
 
