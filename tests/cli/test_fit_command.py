@@ -123,6 +123,19 @@ def test_the_same_fit_replaces_its_own_files_and_no_others(rates):
         (("fit", "track.toml", "rates.csv"), "Files of what was measured follow --to."),
         (("fit", "track.toml", "--to", "none.csv"), "none.csv: received no such file"),
         (
+            (
+                "fit",
+                "track.toml",
+                "--to",
+                "rates.csv",
+                "--free",
+                "track.pad_stiffness",
+                "track.pad_loss_factor",
+            ),
+            "--to: received 'track.pad_loss_factor', a key of the case; allowed: files of what was measured. "
+            "Write --free before each key.",
+        ),
+        (
             (*FIT, "--as", "colour"),
             "measured quantity: received 'colour'; allowed: one of vertical decay rate",
         ),

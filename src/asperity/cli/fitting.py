@@ -9,12 +9,13 @@ import numpy as np
 
 from asperity import __version__, files
 from asperity.arguments import Array
-from asperity.case.any_case import in_toml
+from asperity.case.any_case import AnyCase, entries, in_toml
 from asperity.case.cases import read_case
 from asperity.case.form import content, file_digest
 from asperity.case.toml import toml_text
 from asperity.cli.commands import mark_of, refuse_other_case, taken_folder
 from asperity.cli.running import doubted
+from asperity.errors import InputError
 from asperity.fitting.fitted import Fitted
 from asperity.fitting.running import chosen_free, fitted, measured_for
 from asperity.observables import observable
@@ -61,6 +62,7 @@ def fit_case(
     """Fit a case to files of what was measured, and write the case found, into a folder, else beside it."""
     folder = path.parent if directory is None else directory
     case = read_case(path)
+    _refuse_keys(case, measured)
     data_of_case = measured_for(case, list(measured) or None, read_where(where), what)
     chosen = chosen_free(case, data_of_case, list(free) or None)
     files.refuse_unwritable(folder, "folder of the results", "Choose another folder with -o.")
@@ -98,6 +100,16 @@ def fit_case(
     written = {what: file for what, file in written.items() if file.exists()}
     say_files(written)
     return {"case": path.resolve(), **_document(found), "warnings": doubts, "files": written}
+
+
+def _refuse_keys(case: AnyCase, measured: Sequence[Path]) -> None:
+    """Tell a key that stands where a file is meant: one option has one key."""
+    keys = {entry.dotted for entry in entries(type(case))}
+    for file in measured:
+        if str(file).split("=")[0].strip() in keys and not file.exists():
+            received = f"{str(file)!r}, a key of the case"
+            allowed = "files of what was measured"
+            raise InputError("--to", received, allowed, "Write --free before each key.")
 
 
 def _refuse_other(asked: str, written: dict[str, Path]) -> None:
