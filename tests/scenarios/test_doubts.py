@@ -22,6 +22,14 @@ CHAIN = {"type": "chain", "mass": "0.5 kg", "masses": ["0.1 kg", "4 kg"], "load"
 CHAIN |= {"springs": ["20 kN/m", "100 N/m"], "dampers": ["5 N s/m", "5 N s/m"]}
 WHEEL = small_cases.HEARD | {"kind": "wheel-on-rail", "laws": ["hertz"], "surface": {"smooth": True}}
 
+NU205 = {
+    "kind": "roller-bearing",
+    "bearing": {"name": "NU205"},
+    "axial": "0 N",
+    "radial": "2 kN",
+    "laws": ["areal"],
+}
+
 
 def doubts(case):
     """What is told of sizes when a case is laid ready."""
@@ -78,6 +86,10 @@ def test_a_device_on_which_nothing_was_ever_run_is_told(monkeypatch):
         (
             BEARING | {"fault": BEARING["fault"] | {"width": "18 mm"}},
             "fault.width = 18 mm: balls have a diameter of 7.9",
+        ),
+        (
+            BEARING | NU205 | {"fault": BEARING["fault"] | {"width": "9 mm"}},
+            "fault.width = 9 mm: rollers have a length of 7.8 mm",
         ),
         (
             BEARING | {"fault": [BEARING["fault"], BEARING["fault"] | {"angle": "90 deg", "depth": "50 nm"}]},

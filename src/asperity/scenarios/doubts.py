@@ -365,8 +365,10 @@ def doubt_bearing(case: BearingUnderLoad) -> None:
     for name, keys in case.faults.items():
         for key, most in (("width", 1.0), ("depth", 0.5), ("edge", HIGHEST_BURR), ("burr", HIGHEST_BURR)):
             size = keys.fault and getattr(keys.fault, key)
-            if size and size > most * of.ball_diameter:
-                told = f"{of.ELEMENT}s have a diameter of {rounded(1e3 * of.ball_diameter)} mm"
+            across = "length" if key == "width" and of.ELEMENT == "roller" else "diameter"
+            room = getattr(of, f"{of.ELEMENT}_{across}")
+            if size and size > most * room:
+                told = f"{of.ELEMENT}s have a {across} of {rounded(1e3 * room)} mm"
                 _warn(f"{name}.{key}", size, "m", told, "mm")
     for name in map(case.called, ("inner_raceway", "outer_raceway", "balls")):
         keys = getattr(case, name)
