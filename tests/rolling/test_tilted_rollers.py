@@ -103,6 +103,20 @@ def test_the_rib_pushes_tapered_rollers_in_a_run_as_at_rest(rib):
     assert not rolled(TAPERED, 0.0, tilt=1e-3, **slow).rib_force.size
 
 
+@pytest.mark.parametrize("rib", [None, 3e8])
+@pytest.mark.parametrize("speed", [500.0, SpeedCourse((0.0, 1.0), (500.0, 900.0))])
+def test_rollers_that_are_thrown_on_their_rib_press_the_outer_ring_no_harder(rib, speed):
+    """Held by nothing else the outer ring carries the axial load, Q_o sin α Z, at any speed."""
+    bearing = TAPERED.with_(taper=0.07, rib_stiffness=rib)
+    LOADS[bearing] = 0.0, 600.0
+    run = rolled(bearing, speed=speed, duration=2e-3, settling=2e-3, centrifugal=True)
+    load = 600.0 / (7 * np.sin(0.3))
+    lift = bearing.centrifugal_force(500.0) * np.cos(0.265) / np.cos(0.035)
+    assert lift > 0.3 * load
+    np.testing.assert_allclose(run.outer_force.mean(), load, rtol=5e-3)
+    np.testing.assert_allclose(run.inner_force.mean(), load - lift, rtol=1e-2)
+
+
 def test_a_rib_follows_a_speed_that_changes():
     """At a speed that is reached the rib pushes as at that speed: F_c goes with its square."""
     bearing = TAPERED.with_(taper=0.07, rib_stiffness=3e8)
@@ -273,6 +287,10 @@ test_tilts_that_cannot_be_are_refused = refusals(
     (
         {"axial": "1 kN", "bearing": TAPER | {"taper": "4 rad"}},
         "bearing.taper: received .4 rad.; allowed: an angle",
+    ),
+    (
+        {"bearing": TAPER},
+        "axial: received 0 N beside 2000 N radially; allowed: more than 509.2 N, .* 10.6 N of them",
     ),
     ({"bearing": {"name": "NU205", "taper": "4 deg"}}, "bearing.contact_angle: received 0° of rollers that"),
     ({"bearing": {"name": "NU205", "rib_stiffness": "1 MN/m"}}, "bearing.rib_stiffness: "),

@@ -8,7 +8,7 @@ from scipy.integrate import quad
 from scipy.optimize import least_squares
 
 from asperity import RollerBearing
-from asperity.errors import OutOfRangeWarning
+from asperity.errors import InputError, OutOfRangeWarning
 from asperity.reference.materials import Material
 from refusals import refusals
 
@@ -241,15 +241,50 @@ def test_a_rib_is_a_spring_in_series_with_the_raceways():
     assert not rigid.rib_force.any()
 
 
-def test_a_fast_tapered_roller_is_in_balance_along_its_axis():
+def test_fast_tapered_rollers_and_their_rings_are_in_balance():
     """Forces of both contacts, of the rib along the axis at α − β, and of m (d_m/2) ω² outwards."""
     of = NU205.with_(contact_angle=0.25, taper=0.07)
     found = of.loaded(800.0, 600.0, speed=200.0, cage_angles=[0.1])
     along = np.array([np.sin(0.215), np.cos(0.215)])  # outwards and towards the large end
     outer, inner = (np.array([np.cos(angle), -np.sin(angle)]) for angle in (0.25, 0.18))
-    pushed = found.inner_load * (inner @ along) - found.outer_load * (outer @ along)
-    pushed += of.centrifugal_force(200.0) * along[0]
-    np.testing.assert_allclose(found.rib_force, pushed, rtol=1e-12)
+    on_inner, on_outer = found.inner_load[0, :, None] * inner, found.outer_load[0, :, None] * outer
+    on_rib = found.rib_force[0, :, None] * along
+    thrown = [of.centrifugal_force(200.0), 0.0]
+    assert np.abs(on_inner + thrown - on_outer - on_rib).max() < 1e-9 * found.inner_load.max()
+    pressed = on_inner - on_rib  # on the inner ring, against it
+    across = pressed[:, 0] @ np.cos(found.azimuth[0])
+    np.testing.assert_allclose([across, -pressed[:, 1].sum()], [800.0, 600.0], rtol=1e-9)
+    np.testing.assert_allclose(-on_outer[:, 1].sum(), 600.0, rtol=1e-9)
+
+
+def test_tapered_rollers_turn_as_cones_with_one_apex():
+    """Raceways of half angles α − 2β and α: the cage turns by sin(α − 2β)/(sin(α − 2β) + sin α)."""
+    angle, half = 0.3, 0.04
+    diameter = 40e-3 * np.tan(half) / np.sin(angle - half)
+    of = RollerBearing(
+        rollers=20, roller_diameter=diameter, roller_length=8e-3, pitch_diameter=40e-3,
+        contact_angle=angle, taper=2.0 * half,
+    )  # fmt: skip
+    inner, outer = np.sin([angle - 2.0 * half, angle])
+    turning = of.kinematics(1.0)
+    assert turning.cage == pytest.approx(inner / (inner + outer), rel=1e-12)
+    assert turning.spin == pytest.approx(inner * outer / (inner + outer) / np.sin(half), rel=1e-12)
+    assert np.divide(*of.raceway_radii) == pytest.approx(inner / outer, rel=1e-12)
+    assert of.tones()["outer"].order == pytest.approx(20.0 * turning.cage, rel=1e-12)
+
+
+def test_an_axial_load_below_what_pushes_a_ring_away_is_refused():
+    """Where one roller carries all, Q cos α and Q sin α; thrown rollers push it by F_c cos(α − β)/cos β."""
+    of = NU205.with_(contact_angle=0.25, taper=0.07)
+    push = 13 * of.centrifugal_force(200.0) * np.cos(0.215) / np.cos(0.035) * np.sin(0.25)
+    for radial, speed, least in ((800.0, 0.0, 800.0 * np.tan(0.25)), (0.0, 200.0, push)):
+        told = rf"axial load: received .* beside {radial:g} N radially; allowed: more than {least:.4g} N"
+        with pytest.raises(InputError, match=told):
+            of.loaded(radial, 0.999 * least, speed=speed)
+        with OutOfRangeWarning.ignored():  # so lightly are few slices pressed
+            assert of.loaded(radial, 1.2 * least, speed=speed).imbalance < 1e-9
+    with pytest.raises(InputError, match=f"{push:.3g} N of them by rollers that are thrown on their rib"):
+        of.loaded(0.0, 1.0, speed=200.0)
 
 
 def test_the_stiffness_with_a_rib_is_the_derivative_of_its_forces():

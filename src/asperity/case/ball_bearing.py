@@ -440,7 +440,8 @@ class BearingUnderLoad(AnyCase):
             leaving = self.static.leaving_speed
         except InputError as error:
             heavier = "radial" if self.radial >= self.axial else "axial"
-            yield error.about(heavier) if error.what in ("load", "contact") else error
+            keys = {"load": heavier, "contact": heavier, "axial load": "axial"}
+            yield error.about(keys.get(error.what, error.what))
             return
         yield from self._problems_of_speed(leaving)
         yield from self._problems_of_films()

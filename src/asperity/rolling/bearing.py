@@ -193,8 +193,9 @@ def roll_bearing(
     turning = _Turning(bearing, rings, speed, time_step, settling, total, slip, (tilt, rotating_tilt))
     mechanism = turning.mechanism((inner_law, outer_law), ball_heights, centrifugal=centrifugal)
     loads = radial, axial + bearing.preload
-    mechanism = turning.loaded(mechanism, loads)
     contacts = len(mechanism.contacts)
+    thrown = turning.thrown_on_ribs() if centrifugal else []
+    mechanism = turning.loaded(replace(mechanism, contacts=[*mechanism.contacts, *thrown]), loads)
     mechanism = replace(mechanism, contacts=[*mechanism.contacts, *turning.driven_round(rotating)])
     run = roll_mechanism(
         mechanism,
@@ -241,7 +242,8 @@ class _Turning:
         self._spin = TURN * pure.spin
         mass = self.bearing.ball_mass
         middle = 0.5 * self.bearing.pitch_diameter
-        self.centrifugal_force = mass * middle * (TURN * pure.cage) ** 2 * math.cos(self.contact_angle)
+        self.centrifugal_force = mass * middle * (TURN * pure.cage) ** 2
+        self.centrifugal_force *= self.bearing.flung_outwards(self.contact_angle)
 
     def _clock(self, steps: range) -> Array:
         return np.asarray(self.time_step * np.arange(steps.start, steps.stop, steps.step) - self.settling)
@@ -424,6 +426,22 @@ class _Turning:
             run.energy,
             run.unconverged_steps,
         )
+
+    def thrown_on_ribs(self) -> list[RollingContact]:
+        """What rollers that are thrown on the ribs of the inner ring press it against an axial load.
+
+        Springs that are pressed; of a ring whose contacts carry no axial load, or without ribs, none.
+        """
+        sine = math.sin(self.contact_angle)
+        force = self.bearing.flung_axially(self.centrifugal_force)
+        if not force:
+            return []
+        axially = -1.0 * (self.rings.inner.axial != 0.0)  # as all contacts see the ring, at their angle
+        side = Side(INNER, self.azimuth(0), axially)
+        size = force / sine
+        return [
+            RollingContact(Linear(size, SOFT), self.azimuth(0).places, (side,), self._beside_fastest(size))
+        ]
 
     def driven_round(self, force: float) -> list[RollingContact]:
         """A radial force, N, on the ring that turns and with it, by two springs that are pressed and pulled.

@@ -320,6 +320,14 @@ class BallBearing:
         cage = 2.0 * math.pi * self.kinematics(speed).cage
         return 0.5 * self.ball_mass * self.pitch_diameter * cage**2
 
+    def flung_outwards(self, contact_angle: float) -> float:
+        """Share of centrifugal force by which the outer contact carries more than the inner one."""
+        return math.cos(contact_angle)
+
+    def flung_axially(self, lift: float) -> float:
+        """Axial force of what balls are thrown on the inner ring, N: they lie on no rib."""
+        return 0.0
+
     def kinematics(
         self, speed: float, *, contact_angle: float | None = None, slip: float = 0.0
     ) -> Kinematics:

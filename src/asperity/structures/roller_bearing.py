@@ -88,7 +88,9 @@ class RollerBearing:
     friction, and rings do not bend. A tapered roller is pushed along its axis by both contacts, by
     (Q_i + Q_o) sin β with β half the taper, and the rib holds it there. As rib and inner contact together
     press the inner ring along the normal of the outer contact, a ring sees both raceways at the angle of the
-    outer one, and the rib as a spring in series with them, a compliance of 4 sin² β/k. That the rib pushes
+    outer one, and the rib as a spring in series with them, a compliance of 4 sin² β/k. What rollers are
+    thrown outwards presses them on the rib, too, and the rib the inner ring against the axial load. Speeds
+    are those of cones that roll, by the angle α − β of the rollers' axes. That the rib pushes
     beside the middle of a roller's end, and so tilts it a little, is left out.
 
     Examples
@@ -251,8 +253,8 @@ class RollerBearing:
 
     @property
     def raceway_radii(self) -> tuple[float, float]:
-        """Radii of inner and outer raceway in the middle of a roller, (d_m ∓ D cos α)/2, m."""
-        half = 0.5 * self.roller_diameter * math.cos(self.contact_angle)
+        """Radii of inner and outer raceway in the middle of a roller, (d_m ∓ D cos(α − β))/2, m."""
+        half = 0.5 * self.roller_diameter * math.cos(self.contact_angle - 0.5 * self.taper)
         return 0.5 * self.pitch_diameter - half, 0.5 * self.pitch_diameter + half
 
     @cached_property
@@ -295,8 +297,23 @@ class RollerBearing:
     @property
     def flung_along(self) -> float:
         """Centrifugal force along the axis of a tapered roller over that along its normal."""
-        along = math.sin(self.contact_angle - 0.5 * self.taper) / math.cos(self.contact_angle)
+        along = math.sin(self.contact_angle - 0.5 * self.taper) / self.flung_outwards(self.contact_angle)
         return along if self.taper else 0.0
+
+    def flung_outwards(self, contact_angle: float) -> float:
+        """Share of centrifugal force by which the outer contact carries more than the inner one.
+
+        That across the axis of a roller, cos(α − β), by contacts that lie β from there.
+        """
+        half = 0.5 * self.taper
+        return math.cos(contact_angle - half) / math.cos(half)
+
+    def flung_axially(self, lift: float) -> float:
+        """Force of the ribs of tapered rollers on the inner ring, N, against an axial load.
+
+        It comes of what each roller is thrown along its normal, N: so much less presses the inner contacts.
+        """
+        return self.rollers * lift * math.sin(self.contact_angle) if self.taper else 0.0
 
     def rib_force(self, inner: Array, outer: Array, lift: ArrayLike = 0.0) -> Array:
         """Force of the rib on tapered rollers along their axis.
@@ -367,7 +384,7 @@ class RollerBearing:
         speed : float
             Of the ring that turns, turns per second.
         contact_angle : float, optional
-            Rad; that of the raceways by default.
+            Of the outer raceway, rad; its own by default. Tapered rollers roll at that of their axis, β less.
         slip : float
             Share by which the cage is slower than in pure rolling.
 
@@ -378,7 +395,8 @@ class RollerBearing:
         """
         diameters = self.roller_diameter, self.pitch_diameter
         angle = self.contact_angle if contact_angle is None else contact_angle
-        return Kinematics.rolling(self.rollers, diameters, angle, self.turning, speed=speed, slip=slip)
+        axis = angle - 0.5 * self.taper
+        return Kinematics.rolling(self.rollers, diameters, axis, self.turning, speed=speed, slip=slip)
 
     def tones(self, axial: bool = False) -> dict[str, Tone]:
         """Tones of faults of its parts per turn, and how far slip may move them.

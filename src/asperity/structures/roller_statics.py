@@ -121,7 +121,7 @@ class LoadedRollers:
     def rib_force(self) -> Array:
         """Forces of the rib on tapered rollers along their axis (m, Z), N."""
         of = self.bearing
-        lift = of.centrifugal_force(self.speed) * math.cos(of.contact_angle)
+        lift = of.centrifugal_force(self.speed) * of.flung_outwards(of.contact_angle)
         return of.rib_force(self.inner_load, self.outer_load, lift)
 
     @property
@@ -197,6 +197,7 @@ def roller_load_distribution(
     carried = bearing.contact_angle > 0.0 or axial == 0.0
     allowed = "0 N where contact_angle is 0: such rollers slide axially"
     require(carried, "axial load", f"{rounded(axial, 4)} N", allowed, "Ribs are not in it.")
+    _check_axial(bearing, radial, axial, speed)
     turned = bool(moments.any() or tilted.any())
     held = radial + axial > 0.0 or turned or bearing.clearance < 0.0
     remedy = "Without one the inner ring is loose."
@@ -214,6 +215,20 @@ def roller_load_distribution(
         raise InputError("load", received, "what the rollers carry", remedy) from error
     _doubt(found)
     return found
+
+
+def _check_axial(bearing: RollerBearing, radial: float, axial: float, speed: float) -> None:
+    """Refuse an axial load that is less than what raceways at an angle push a free ring away with."""
+    lift = bearing.centrifugal_force(speed) * bearing.flung_outwards(bearing.contact_angle)
+    thrown = bearing.flung_axially(lift)
+    least = radial * math.tan(bearing.contact_angle) + thrown
+    received = f"{rounded(axial, 4)} N beside {rounded(radial, 4)} N radially"
+    of_ribs = f", {rounded(thrown, 3)} N of them by rollers that are thrown on their rib" * (thrown > 0.0)
+    allowed = (
+        f"more than {rounded(least, 4)} N, with which raceways at this angle push the rings apart{of_ribs}"
+    )
+    remedy = "Give the axial load with which the other bearing of a pair holds it."
+    require(least == 0.0 or axial > least, "axial load", received, allowed, remedy)
 
 
 def _both_planes(what: str, given: ArrayLike | None, *, largest: float = math.inf) -> Array:
@@ -298,7 +313,7 @@ def _solved(
     """The inner ring in balance at each angle of the cage; tilted as it is told, or as moments tilt it."""
     azimuth = angles[:, None] + 2.0 * math.pi / bearing.rollers * np.arange(bearing.rollers)
     moved = _followed(bearing, azimuth)
-    lift = bearing.centrifugal_force(speed) * math.cos(bearing.contact_angle)
+    lift = bearing.centrifugal_force(speed) * bearing.flung_outwards(bearing.contact_angle)
     inner, outer = bearing.inner_contact, bearing.outer_contact
     overlap = 0.5 * max(-bearing.clearance, 0.0)
     scale = max(load[0], load[2], float(np.abs(load[MOMENTS]).max()) / (0.5 * bearing.roller_length))
@@ -321,6 +336,7 @@ def _solved(
         start[:, 2] = (max(0.5 * bearing.clearance, 0.0) + pressed) / sine
     free = [0, 1] + [2] * bool(sine) + [3, 4] * (tilt is None)
     force = load / levers
+    force[2] -= bearing.flung_axially(lift)
 
     def energy_of(ring: Array) -> tuple[Array, Array, Array]:
         stretch = rest + np.einsum("mzik,mk->mzi", moved[..., free], ring)
