@@ -251,8 +251,11 @@ def test_a_run_says_what_helps_and_finds_it_again(monkeypatch):
     monkeypatch.setattr("asperity.studies.effects.what_helps", lambda case: plan)
     call("run", "rail.toml", "-o", "out")
     assert "What helps?" not in Path("out/report.html").read_text(encoding="utf-8")
-    call("run", "rail.toml", "-o", "out", "--what-helps")
+    told = words_of(call("run", "rail.toml", "-o", "out", "--what-helps").stdout)
+    assert re.search(r"What each change does, the quietest first .* a fifth slower −\d\.\d", told)
     assert "What helps?" in Path("out/report.html").read_text(encoding="utf-8")
     found = asperity.open_result("out")["effects"]
     assert float(found["effect"].sel(radiator="total", variant="a fifth slower")) < 0.0
-    assert "Nothing to do" in call("run", "rail.toml", "-o", "out", "--what-helps").stderr
+    again = call("run", "rail.toml", "-o", "out", "--what-helps")
+    assert "Nothing to do" in again.stderr
+    assert words_of(again.stdout) == told

@@ -10,7 +10,7 @@ import asperity
 from asperity.case.cases import parse_case
 from asperity.cli.studying import defined
 from asperity.errors import CaseError, InputError
-from asperity.studies.definition import TEMPLATE, expanded, load_study, study_of
+from asperity.studies.definition import TEMPLATE, expanded, load_study, separated, study_of
 from refusals import refusals
 
 SWEEP = 'case = "ball.toml"\n[sweep]\n'
@@ -113,6 +113,24 @@ def test_ranges_have_steps_ratios_or_whole_numbers():
     assert seed.values == (7, 1, 2, 3)
     assert load.variable.values == pytest.approx([5, 10, 20, 40, 80])
     assert study_of("ball.toml", {"seed": "1..20"}).axes[0].values == tuple(range(1, 21))
+
+
+@pytest.mark.parametrize(
+    ("values", "separate"),
+    [
+        ("80, 135, 2e2 km/h", ["80 km/h", "135 km/h", "2e2 km/h"]),
+        ("600,1.8e3 1/min", ["600 1/min", "1.8e3 1/min"]),
+        ("-5, 0 dB", ["-5 dB", "0 dB"]),
+        ("80, 20 m/s, 200 km/h", ["80", "20 m/s", "200 km/h"]),
+        ("80, 100..200 km/h, 3 steps", ["80", "100..200 km/h, 3 steps"]),
+        ("1, inf", ["1", "inf"]),
+        ("1, 2.5e3", ["1", "2.5e3"]),
+        ("areal, table", ["areal", "table"]),
+    ],
+)
+def test_the_unit_of_the_last_value_is_that_of_bare_numbers_before_it(values, separate):
+    """Where other units or ranges stand among them, each keeps what it has."""
+    assert separated(values) == separate
 
 
 @pytest.mark.parametrize(

@@ -472,7 +472,7 @@ STUDY = [
         ["--vary"],
         multiple=True,
         metavar="KEY=VALUES",
-        help="STUDY is a case: a key and its values, as 'speed = 20 m/s, 200 km/h', or a range, as "
+        help="STUDY is a case: a key and its values, as 'speed = 80, 200 km/h', or a range, as "
         "'80..300 km/h, 6 steps', '60..1900 MN/m, 6 ratios', '1..20'. May be repeated.",
     ),
     click.Option(

@@ -106,7 +106,7 @@ def study(
     Examples
     --------
     # two speeds, one table
-    asperity study case.toml --vary "speed = 20 m/s, 200 km/h"
+    asperity study case.toml --vary "speed = 80, 200 km/h"
     # mean and scatter over four textures, at two speeds
     asperity study case.toml --vary "seed = 1, 2, 3, 4" --vary "speed = 20 m/s, 56 m/s"
     # six speeds, both ends among them

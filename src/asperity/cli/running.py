@@ -96,6 +96,12 @@ def run_case(
         remark("Nothing to do: this case has been run, with the same files and program (--again runs it).")
     if verdict := tree.attrs.get("verdict", ""):
         say(verdict)
+    if what_helps:
+        from asperity.cli.studying import print_effects
+        from asperity.scenes.figures.effects import what_helps_table
+
+        if (effects := what_helps_table(tree)) is not None:
+            print_effects(effects)
     written = {"results": directory / RESULT} | ({"report": directory / PAGE} if report else {})
     say_files(written)
     return {

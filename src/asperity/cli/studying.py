@@ -93,7 +93,7 @@ def run_study(
         effect = effects(table) if VARIANT in table.dims and judged_levels(table) else None
         told, left = _by_place(table, effect)
         for words, found in told:
-            _print_effects(words, found)
+            print_effects(effects_table(found), words)
         if left:
             remark(left)
         if asked or not (told and _effects_say_all(table)):
@@ -137,7 +137,7 @@ def defined(study: Path, words: Sequence[str], drawn: Sequence[str], *, helps: b
     """
     if not (words or drawn or helps):
         return load_study(study)
-    vary = _by_key("--vary", words, "speed = 20 m/s, 200 km/h")
+    vary = _by_key("--vary", words, "speed = 80, 200 km/h")
     sweep = {name: [_value(each) for each in separated(values)] for name, values in vary.items()}
     draw: dict[str, Any] = dict(_by_key("--draw", drawn, "radial = 50..500 N"))
     draw = {
@@ -307,9 +307,8 @@ def _blocks(told: Sequence[tuple[str, Effects]], left: str) -> Iterator[ReportTa
         yield replace(found, name=f"effects-{n}", title=title, note=f"{found.note} {left}".rstrip())
 
 
-def _print_effects(words: str, of: Effects) -> None:
-    """Print what each variant does."""
-    found = effects_table(of)
+def print_effects(found: ReportTable, words: str = "") -> None:
+    """Print what each variant does, at a place on other axes that words name."""
     rows = [[cell.text for cell in row] for row in found.rows]
     say_table(f"{found.title}{f', {words}' if words else ''}", found.head, rows, width=WIDTH)
 

@@ -202,7 +202,7 @@ def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], preparin
         ),
         ("runs", ", ".join(case.laws) + alone),
         *((f"contact solutions, {name}", f"at most {count}") for name, count in solutions.items()),
-        *(("cells at rims", f"{kind} on the {name}") for name, kind in cells.items()),
+        *rims_in_words(prepared),
         *films_in_words(prepared),
         ("not in it", omitted_from(case)),
     ]
@@ -236,6 +236,11 @@ def _cells_at_rims(prepared: PreparedBearing) -> dict[str, str]:
         return {}
     ons = zip(RINGS, raceways_of(prepared, progress=None), strict=True)
     return {NAMES[name]: on.seen.cells for name, on in ons}
+
+
+def rims_in_words(prepared: PreparedBearing) -> list[tuple[str, str]]:
+    """How cells at rims count on each raceway; none where no law sees heights."""
+    return [("cells at rims", f"{kind} on the {name}") for name, kind in _cells_at_rims(prepared).items()]
 
 
 def _tilt_in_words(case: BearingUnderLoad) -> str:

@@ -20,6 +20,7 @@ from asperity.scenarios.prepared_bearing import (
     bearing_parts,
     names_in,
     omitted_from,
+    rims_in_words,
 )
 from asperity.scenes.bearing_at_rest import DIRECTIONS
 from asperity.scenes.bearing_validity import bearing_findings
@@ -59,7 +60,7 @@ def bearing_result(
     seen = observed(computed, OF_BEARINGS)
     found = list(bearing_findings(case, computed.runs)) + seen.findings
     warn_of_findings(found)
-    numerics = (*_numerics(case, time.monotonic() - began), *seen.numerics)
+    numerics = (*_numerics(prepared, time.monotonic() - began), *seen.numerics)
     scenario = scenario_group(case, numerics)
     scenario[contact.VALIDITY] = [finding.row() for finding in found]
     laid_out = scenario | motion_group(computed) | seen.values
@@ -172,10 +173,12 @@ def _most_of(names: Array, squares: Array, scatter: Array) -> str:
 # --- how it was computed
 
 
-def _numerics(case: BearingUnderLoad, wall: float) -> Iterator[tuple[str, str]]:
+def _numerics(prepared: PreparedBearing, wall: float) -> Iterator[tuple[str, str]]:
     """Numbers of the computation: names and values."""
+    case = prepared.case
     yield "time step", f"{rounded(case.step * 1e6, 4)} µs"
     yield "time steps per sample that is written", f"{case.steps_per_sample}"
     yield "resonance of the most loaded ball between the rings", f"{rounded(case.ball_resonance, 4)} Hz"
     yield "imbalance of the static solution", f"{rounded(case.static.imbalance, 1)} of the load"
+    yield from rims_in_words(prepared)
     yield "wall time", f"{wall:.2f} s"

@@ -26,12 +26,17 @@ _RANGE = re.compile(
 )
 _BETWEEN = re.compile(r",(?!\s*\d+\s*(?:steps|ratios)\s*(?:,|$))")
 """Commas between the values of a list, but for that before the number of steps."""
+_WITH_UNIT = re.compile(rf"(?>{NUMBER})\s*((?:1/)?[^\d\s.,][^.,]*)")
 MOST_VALUES = 10_000
 
 
 def separated(values: str) -> list[str]:
-    """Values that commas separate, each range one of them."""
-    return [each.strip() for each in _BETWEEN.split(values)]
+    """Values that commas separate, each range one of them; bare numbers have the unit of the last value."""
+    *before, last = (each.strip() for each in _BETWEEN.split(values))
+    unit = _WITH_UNIT.fullmatch(last)
+    if unit and all(re.fullmatch(NUMBER, each) for each in before):
+        before = [f"{each} {unit[1]}" for each in before]
+    return [*before, last]
 
 
 def expanded(what: str, values: object) -> object:
