@@ -38,7 +38,7 @@ plt.show()
 # %%
 # The load is met, on part of the circle.
 
-share = contact.area / (np.pi * hertz_radius**2)
-print(f"{contact.force:.2f} N on {contact.area * 1e12:.0f} µm², {share:.0%} of the Hertz circle")
+share = contact.real_area / (np.pi * hertz_radius**2)
+print(f"{contact.force:.2f} N on {contact.real_area * 1e12:.0f} µm², {share:.0%} of the Hertz circle")
 assert abs(contact.force / load - 1.0) < 1e-5
 assert 0.2 < share < 1.0

@@ -33,8 +33,8 @@ class Contact:
     approach : float
         Approach of the bodies, m, positive closing.
     area : float
-        Real area of contact, m²: cells under pressure, those at rims as far as they are covered, and those at
-        sharp edges as far as they are sound.
+        Of the cells under pressure, m²: whole ones are counted, and stand out beyond rims, which `real_area`
+        takes off; those that are covered, or sound at sharp edges, in part count as far as they are.
     iterations : int
         Conjugate-gradient iterations, all inner solutions together.
     residual : float
@@ -83,7 +83,7 @@ class Contact:
 
     @property
     def real_area(self) -> float:
-        """Area of contact, m²: of whole cells less what they stand out beyond rims on average.
+        """Real area of contact, m²: of whole cells less what they stand out beyond rims on average.
 
         That is `BEYOND_RIM` of a cell for each side between one in contact and one that is not.
         """

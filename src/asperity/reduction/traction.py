@@ -142,7 +142,8 @@ def traction_states(
     if uncoupled.unlikeness:  # a warning tells what is neglected, once
         uncoupled.shift(half_space.solve(gap, approach=r[-1]))
     g, nu = uncoupled.shear_modulus, uncoupled.poisson_ratio
-    both = Material("both", 2.0 * g * (1.0 + nu), nu, 1.0)
+    dense = max(each.density for each in bodies)  # a material has one; no contact asks for it
+    both = Material("both", 2.0 * g * (1.0 + nu), nu, dense)
     stuck = FrictionalHalfSpace(half_space, (both, both), UNLIMITED)
 
     def pressed(sample: Array) -> list[Array]:
@@ -174,7 +175,7 @@ def _tangents(stuck: FrictionalHalfSpace, contact: Contact, smooth: Contact, sam
     for row, each in zip(found, (contact, smooth), strict=True):
         shifts = ((MOTION, 0.0), (0.0, MOTION))
         matrix = -np.array([stuck.shift(each, shift).force for shift in shifts]).T / MOTION
-        row[:8] = each.force, each.edge_share > TRUNCATED, each.area, each.stiffness, *matrix.ravel()
+        row[:8] = each.force, each.edge_share > TRUNCATED, each.real_area, each.stiffness, *matrix.ravel()
     if has_room(smooth, sample):
         motions = MOTION * np.array(list(DIRECTIONS.values()))
         rolled = rolled_over(stuck, smooth, sample, motions)

@@ -115,7 +115,7 @@ class PressedSample:
             "share": (wanted - self.touch) / reach if reach else 0.0,
             "pressure": pressure,
             "largest_pressure": float(pressure.max()),
-            "area": contact.area,
+            "area": contact.real_area,
             "converged": contact.converged,
             "at_edge": contact.edge_share,
             "smooth_force": float(smooth),
