@@ -66,6 +66,14 @@ def test_a_part_whose_tone_is_close_to_a_multiple_of_a_loud_shaft_is_named(part)
         assert [each.part for each in found.parts] == [part]
 
 
+def test_a_ball_beside_a_rub_is_named_where_the_lines_of_the_shaft_are_clearer_at_its_speed():
+    for seed in range(3):
+        signal = faulty_signal("ball", SPEED, RATE, 2.0, bearing="6203", angle=0.15, noise=0.1, seed=seed)
+        clipped = np.clip(signal, -0.6, 0.6) + 0.2 * lines(SPEED, range(1, 9))
+        found = diagnose(rubbing(clipped, height=0.3, seed=seed), RATE, TONES["6203"], SPEED)
+        assert [each.part for each in found.parts] == ["ball"]
+
+
 @pytest.mark.parametrize("times", [2, 3])
 def test_an_envelope_with_the_lines_of_the_shaft_and_of_a_part_of_its_speed_holds_no_blows(times):
     """As of a sound measured bearing whose band, after resampling by 4/5, was another one: lines of 0.43 at
