@@ -131,6 +131,7 @@ def test_the_demonstration_says_where_its_report_lies():
     said = call("demo")
     assert "warning" not in said.stderr.lower()
     assert "out of range" not in said.output.lower()
+    assert "not built up" not in said.stdout
     page = Path("asperity-demo/report.html").resolve()
     assert str(page) in said.stdout
     assert page.stat().st_size > 100_000

@@ -388,6 +388,11 @@ test_values_fit_what_an_observer_declares = refusals(
         f"level(law, time) {OF_OWN} the shape (1,); allowed: dimensions (law, time)",
     ),
     (
+        {TIME: [[1.0]]},
+        f"time {OF_OWN} the shape (1, 1); allowed: dimensions (time). "
+        'Name others behind it, as in Entry("own", "time(law, contact)", …).',
+    ),
+    (
         {LEVEL: [[1.0, 2.0]], LAW: ["a", "b"]},  # what is laid out first makes no difference
         f"level(law, time) {OF_OWN} the shape (1, 2); allowed: dimensions (law: 2, time: any size)",
     ),
@@ -433,6 +438,12 @@ test_declarations_are_looked_at = refusals(
         r"contact, time\).\. What has no dim",
     ),
     (lambda: Entry("own", "level(law, law)", "1", "level"), "entry of the group own"),
+    (
+        lambda: Entry("own", "level", ("law", "time"), "1"),
+        "entry level of the group own: received ('law', 'time') and '1'; "
+        "allowed: its unit and its meaning, as texts; its place is a name, or a name with its dimensions",
+    ),
+    (lambda: Entry("own", "level", "1", None), "received '1' and None; allowed: its unit and its meaning"),
     (
         lambda: Observer("a/b", (LEVEL,), dict),
         "name of an observer: received 'a/b'; allowed: letters, digits",

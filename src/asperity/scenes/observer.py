@@ -199,7 +199,14 @@ def _written(item: Entry | Attribute, value: Any, observer: str) -> Any:
     names = value.dims if made else item.dims
     received = f"dimensions ({', '.join(map(str, names))})" if made else f"the shape {values.shape}"
     fits = values.ndim == len(item.dims) and tuple(names) == item.dims
-    require(fits, what, received, f"dimensions ({', '.join(item.dims)})")
+    remedy = f'Name others behind it, as in Entry("{item.group}", "{item.name}(law, contact)", …).'
+    require(
+        fits,
+        what,
+        received,
+        f"dimensions ({', '.join(item.dims)})",
+        remedy if item.dims == (item.name,) else "",
+    )
     return item.variable(values, **(value.attrs if made else {}))
 
 

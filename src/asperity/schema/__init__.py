@@ -44,6 +44,10 @@ class Entry:
     def __post_init__(self) -> None:
         if not _PLACE.fullmatch(self.place) or len(set(self.dims)) < len(self.dims):
             raise InputError(f"entry of the group {self.group}", repr(self.place), _PLACES, _NUMBER)
+        if not isinstance(self.units, str) or not isinstance(self.long_name, str):
+            received = f"{self.units!r} and {self.long_name!r}"
+            allowed = f"its unit and its meaning, as texts; its place is {_PLACES}"
+            raise InputError(f"entry {self.place} of the group {self.group}", received, allowed)
 
     @property
     def name(self) -> str:
