@@ -241,6 +241,18 @@ def test_a_rib_is_a_spring_in_series_with_the_raceways():
     assert not rigid.rib_force.any()
 
 
+def test_a_soft_rib_gives_way_by_its_force_where_rollers_are_thrown_on_it_too():
+    """The ring moves by both approaches, and by 2 sin β of the way of a roller along its axis."""
+    of = NU205.with_(contact_angle=0.25, taper=0.07, rib_stiffness=5e6)
+    found = of.loaded(axial=2000.0, speed=400.0)
+    loads = found.inner_load[0, 0], found.outer_load[0, 0]
+    reached = of.inner_contact.approach(loads[0]) + of.outer_contact.approach(loads[1])
+    opened = 2.0 * np.sin(0.035) * found.rib_force[0, 0] / of.rib_stiffness
+    moved = found.displacement[0, 2] * np.sin(0.25) - 0.5 * of.clearance * np.cos(0.25)
+    assert opened > 0.02 * reached
+    assert moved == pytest.approx(reached + opened, rel=1e-9)
+
+
 def test_fast_tapered_rollers_and_their_rings_are_in_balance():
     """Forces of both contacts, of the rib along the axis at α − β, and of m (d_m/2) ω² outwards."""
     of = NU205.with_(contact_angle=0.25, taper=0.07)
