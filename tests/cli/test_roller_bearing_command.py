@@ -3,6 +3,7 @@
 import csv
 import json
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -104,6 +105,20 @@ def test_a_data_sheet_is_of_rollers(tmp_path):
     ):  # fmt: skip
         assert words in page
     assert "groove" not in page
+    assert "means while a roller passes" in page
+    assert ">taper<" not in page
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "told"), [("", "rigid"), ('rib_stiffness = "300 MN/m"', "a spring of 300 MN/m")]
+)
+def test_a_taper_and_its_rib_are_told(tapered, tmp_path, stiffness, told):
+    (path := Path(tapered)).write_text(f'{TAPERED}taper = "4.2 deg"\n{stiffness}\n')
+    said = call("bearing", tapered, "--sheet", str(sheet := tmp_path / "sheet.html")).stdout
+    page = re.sub(r"<[^>]*>|\s+", " ", sheet.read_text(encoding="utf-8"))
+    assert re.search(rf"taper +4.2° +rib +{told}", page)
+    said = call("bearing", str(path)).stdout
+    assert f"contact angle 14°, taper 4.2°, its rib {told}" in " ".join(said.split())
 
 
 def test_a_table_has_stiffness_and_damping_of_a_ring_held_against_tilt(tmp_path):

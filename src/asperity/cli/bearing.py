@@ -114,6 +114,8 @@ def _in_words(of: AnyBearing) -> str:
         crowning = f"{of.crowning} profile" + f" of {rounded(of.profile.drop * 1e6)} µm" * (
             of.profile.drop > 0.0
         )
+        if of.taper:
+            angle += f", taper {rounded(math.degrees(of.taper))}°, its rib {of.rib}"
         return (
             f"{of.rollers} rollers of {rolling} × {of.roller_length * 1e3:.4g} mm, {crowning}, {pitch}, "
             f"{clearance}, {angle}"

@@ -99,6 +99,8 @@ def _geometry(keys: LoadKeys) -> ReportTable:
             *(pitch, clearance),
             ("contact angle", angle),
         ]
+        if of.taper:
+            rows += [("taper", f"{rounded(math.degrees(of.taper))}°"), ("rib", of.rib)]
     else:
         flanks = f"{rounded(math.degrees(of.arch_angle or 0.0), 4)}°"
         arches = [("flanks of the gothic arches", flanks)] if of.arches else []
@@ -139,7 +141,8 @@ def _stiffness(keys: LoadKeys) -> PageFigure:
     across = log_axis("stiffness / (N/µm)", [each.y for each in lines])
     along = chart.Axis("load / N", float(loads[0]), float(loads[-1]), log=True)
     columns = {"load (N)": loads} | {f"stiffness {way} (N/m)": means[:, n] for n, way in ways.items()}
-    caption = "Of the inner ring, means while a ball passes, at this ratio of radial and axial load."
+    of = keys.bearing
+    caption = f"Of the inner ring, means while a {of.ELEMENT} passes, at this ratio of radial and axial load."
     parts: list[chart.Panel | str] = [chart.Panel(along, across, tuple(lines)), caption]
     return PageFigure.of("stiffness_over_load", "Stiffness over load", parts, "", columns)
 

@@ -16,6 +16,7 @@ from asperity.contact.slices import FEWEST, SLICES, SlicedContact
 from asperity.parameters import Choice, MaterialOrName, Number, Quantity, checked_parameters, parameter
 from asperity.reference.materials import MATERIALS, Material, contact_modulus
 from asperity.structures.ball_bearing import FASTEST, HARDNESS, BallBearing, Kinematics, tones_between
+from asperity.units import written
 from asperity.written_numbers import rounded
 
 if TYPE_CHECKING:
@@ -314,6 +315,13 @@ class RollerBearing:
         It comes of what each roller is thrown along its normal, N: so much less presses the inner contacts.
         """
         return self.rollers * lift * math.sin(self.contact_angle) if self.taper else 0.0
+
+    @property
+    def rib(self) -> str:
+        """What holds tapered rollers along their axes, in words."""
+        if self.rib_stiffness is None:
+            return "rigid"
+        return f"a spring of {written(self.rib_stiffness, 'N/m', 'MN/m')}"
 
     def rib_force(self, inner: Array, outer: Array, lift: ArrayLike = 0.0) -> Array:
         """Force of the rib on tapered rollers along their axis.
