@@ -2,6 +2,7 @@
 
 import io
 import json
+import struct
 import wave
 from collections.abc import Iterator
 from pathlib import Path
@@ -13,6 +14,13 @@ from asperity.arguments import ArrayLike
 
 LONGEST_COMMENT = 4096  # bytes
 """Of the comment in a file, longer ones are not ours."""
+
+
+FORM, SAMPLES = b"fmt ", b"data"
+"""Pieces that each WAV file has."""
+BACKWARDS = b"RIFX", b"FFIR"
+"""First letters of files whose numbers begin with their highest byte."""
+_FORM = "HHIIHH"
 
 
 def wave_bytes(
@@ -48,7 +56,7 @@ def chunks_of(file: Path) -> Iterator[tuple[bytes, int, int]]:
     """Name of each chunk of a WAV file, the place of its content, and the length that its head tells."""
     with open(file, "rb") as opened:
         head = opened.read(12)
-        order: Literal["big", "little"] = "big" if head[:4] in (b"RIFX", b"FFIR") else "little"
+        order: Literal["big", "little"] = "big" if head[:4] in BACKWARDS else "little"
         place = len(head)
         size = file.stat().st_size
         long = 0
@@ -58,10 +66,22 @@ def chunks_of(file: Path) -> Iterator[tuple[bytes, int, int]]:
             told = int.from_bytes(opened.read(4), order)
             if name == b"ds64":  # of a file beyond 4 GiB
                 long = int.from_bytes(opened.read(16)[8:], order)
-            if name == b"data":
+            if name == SAMPLES:
                 told = long or told
             yield name, place + 8, told
             place += 8 + told + told % 2
+
+
+def form_of(file: Path, place: int) -> tuple[int, ...]:
+    """Numbers of the piece `FORM` at a place of a WAV file.
+
+    The kind of its samples, channels, samples per second, bytes per second, bytes of a sample of all channels,
+    and bits of one.
+    """
+    with open(file, "rb") as opened:
+        order = ">" if opened.read(4) in BACKWARDS else "<"
+        opened.seek(place)
+        return struct.unpack(order + _FORM, opened.read(struct.calcsize(order + _FORM)).ljust(16, b"\0"))
 
 
 def told_scale(file: Path) -> float | None:

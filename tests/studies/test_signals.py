@@ -256,10 +256,10 @@ test_wrong_paths_and_levels = refusals(
 SAMPLES = np.arange(-300, 300, dtype="<i2")
 
 
-def wav(samples=SAMPLES, form=1, **fields):
+def wav(samples=SAMPLES, form=1, *, channels=1, rate=12_000, align=2, bits=16, **fields):
     """A WAV file of 12 kHz, whose head may tell other sizes of RIFF and data, and another form than PCM."""
     sizes = {"riff": 36 + samples.nbytes, "data": samples.nbytes} | fields
-    kind = struct.pack("<HHIIHH", form, 1, 12_000, 24_000, 2, 16)
+    kind = struct.pack("<HHIIHH", form, channels, rate, 24_000, align, bits)
     chunks = b"fmt " + struct.pack("<I", 16) + kind + b"data" + struct.pack("<I", sizes["data"])
     return b"RIFF" + struct.pack("<I", sizes["riff"]) + b"WAVE" + chunks + samples.tobytes()
 
@@ -275,6 +275,15 @@ def recorded(name, contents, tmp_path):
 
 def test_a_wav_file_is_read_in_shares_of_full_scale(tmp_path):
     np.testing.assert_array_equal(recorded("a.wav", wav(), tmp_path), SAMPLES / 2**15)
+
+
+def test_a_wav_file_with_the_highest_byte_first(tmp_path):
+    head = b"WAVEfmt " + struct.pack(">IHHIIHH", 16, 1, 1, 12_000, 24_000, 2, 16)
+    content = head + b"data" + struct.pack(">I", SAMPLES.nbytes) + SAMPLES.astype(">i2").tobytes()
+    file = b"RIFX" + struct.pack(">I", len(content)) + content
+    np.testing.assert_array_equal(recorded("a.wav", file, tmp_path), SAMPLES / 2**15)
+    with pytest.raises(InputError, match="1 channel of 0 bits, 2 bytes a sample, 12000 samples per second"):
+        recorded("a.wav", file.replace(b"\0\x10data", b"\0\0data"), tmp_path)
 
 
 @pytest.mark.parametrize("name", ["a.mat", "a", "a.dat"])
@@ -323,6 +332,19 @@ test_signals_that_are_none = refusals(
     ),
     ("a.wav", wav(form=3), r"a kind of WAV that is not read \(.*16-bit floating-point data\)"),
     ("a.npy", np.float64(3.0), "a single number; allowed: a signal"),
+    (
+        "a.wav",
+        wav(bits=0),
+        "received 1 channel of 0 bits, 2 bytes a sample, 12000 samples per second, by its head; allowed: none "
+        "of them 0, and bytes for all bits. Its head is damaged",
+    ),
+    ("a.wav", wav(rate=0), "received 1 channel of 16 bits, 2 bytes a sample, 0 samples per second"),
+    ("a.wav", wav(channels=0), "received 0 channels of 16 bits, 2 bytes a sample"),
+    ("a.wav", wav(channels=2), "received 2 channels of 16 bits, 2 bytes a sample"),
+    ("a.wav", wav(bits=17), "received 1 channel of 17 bits, 2 bytes a sample"),
+    ("a.wav", wav()[:36], "a WAV file without its piece 'data'; allowed: one that tells its kind .*damaged"),
+    ("a.wav", wav().replace(b"fmt ", b"fmT "), "a WAV file without its piece 'fmt '; allowed"),
+    ("a.wav", wav()[:12], "a WAV file without its piece 'fmt ' and 'data'; allowed"),
     ("a.wav", wav()[:-7], r"1200 bytes of samples, by its head, in 1193; .*truncated"),
     (
         "a.npy",

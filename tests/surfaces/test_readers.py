@@ -13,7 +13,7 @@ import pytest
 from scipy.io import netcdf_file, savemat
 from surface_files import SDF_TYPES, npy, sdf_ascii, sdf_binary, x3p, zipped
 
-from asperity.errors import InputError, MissingPointsWarning
+from asperity.errors import InputError, MissingPointsWarning, PhysicsWarning
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.readers import libraries, read_all, read_surface
 from asperity.surfaces.readers.hints import Hints
@@ -240,6 +240,28 @@ def test_the_other_end_of_a_type_is_a_height(write, magic, end, code):
     value = getattr(ENDS[code], end)
     surface = read_surface(write("a.sdf", sdf_binary(holed(value), code, magic=magic)))
     assert surface.heights[1, 2] == pytest.approx(1e-9 * value)
+
+
+@pytest.mark.parametrize("code", [0, 1, 2, 4, 5, 6])
+@pytest.mark.parametrize("magic", [b"bISO-1.0", b"bBCR-1.0"])
+@pytest.mark.parametrize("end", ["min", "max"])
+def test_an_end_of_a_type_that_is_not_reserved_is_told_where_it_stands_alone(write, magic, code, end):
+    kind = np.iinfo(SDF_TYPES[code])
+    stored = 50 + np.arange(64).reshape(8, 8) % 9
+    file = write("a.sdf", sdf_binary(stored, code, magic=magic))
+    assert not np.isnan(read_surface(file).heights).any()  # nothing is told
+    stored[2, 3:5] = getattr(kind, end)
+    file = write("a.sdf", sdf_binary(stored, code, magic=magic))
+    with pytest.warns(PhysicsWarning) as caught:
+        heights = read_surface(file).heights
+    told = [str(each.message) for each in caught if "an end of the type" in str(each.message)]
+    if np.isnan(heights).any():
+        assert not told
+    else:
+        assert told == [
+            f"a.sdf: 2 points of 64 stored as {getattr(kind, end)}, an end of the type, away from all others: "
+            "taken for heights. If it marks what is missing, export the file as text with NaN there."
+        ]
 
 
 @pytest.mark.parametrize("file_format", ["ASCII", "BINARY"])

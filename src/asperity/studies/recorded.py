@@ -1,5 +1,6 @@
 """Signals from files: what was recorded, at which rate, and what was recorded beside it."""
 
+import math
 import re
 import warnings
 import wave
@@ -26,7 +27,7 @@ from asperity.text_files import (
     refuse_decimal_commas,
     separator_in,
 )
-from asperity.wave_files import chunks_of, told_scale
+from asperity.wave_files import FORM, SAMPLES, chunks_of, form_of, told_scale
 from asperity.written_numbers import count_of, rounded
 
 LEAST_PEAK = 1e-60
@@ -36,6 +37,9 @@ MOST_PEAK = 1e60
 LARGEST_TEXT = 64 * 2**20  # bytes
 UNREAD_WAV = ("Unknown wave file format", "Unsupported bit depth")
 """What SciPy says of an intact file that it does not read."""
+
+NUMBERS = (1, 3, 0xFFFE)
+"""Kinds of WAV that hold numbers, PCM and floats, and one that says so further on."""
 
 
 def read_signal(
@@ -210,16 +214,37 @@ def _unit_number(file: Path, kind: NDArray[Any] | Any) -> float:
 
 
 def _check_pieces(file: Path) -> None:
-    """Refuse a WAV file whose samples are more, by its own words, than it holds.
+    """Refuse a WAV file that lacks a piece, whose samples are of no bits, or are more than it holds.
 
     What writes to a pipe does not know their number, and writes the largest there is, or none.
     """
     size = file.stat().st_size
+    met = set[bytes]()
     for name, place, told in chunks_of(file):
-        if name == b"data":
+        met.add(name)
+        if name == FORM:
+            _check_form(file, place)
+        if name == SAMPLES:
             received = f"{told} bytes of samples, by its head, in {size - place}"
             remedy = "The file is truncated; copy it again."
             require(told <= size - place, file.name, received, "all of them", remedy)
+    missing = " and ".join(f"'{name.decode()}'" for name in (FORM, SAMPLES) if name not in met)
+    allowed = "one that tells its kind ('fmt ') before its samples ('data')"
+    remedy = "The file is damaged or truncated; copy or export it again."
+    require(not missing, file.name, f"a WAV file without its piece {missing}", allowed, remedy)
+
+
+def _check_form(file: Path, place: int) -> None:
+    """Refuse a WAV file of numbers of which its head, at a place, says what cannot be."""
+    kind, channels, rate, _, together, bits = form_of(file, place)
+    received = (
+        f"{count_of(channels, 'channel')} of {count_of(bits, 'bit')}, {count_of(together, 'byte')} a sample, "
+        f"{rate} samples per second, by its head"
+    )
+    told = min(channels, bits, rate) > 0 and together >= channels * math.ceil(bits / 8)
+    allowed = "none of them 0, and bytes for all bits"
+    remedy = "Its head is damaged; export it again."
+    require(told or kind not in NUMBERS, file.name, received, allowed, remedy)
 
 
 _UNIVERSAL = re.compile(

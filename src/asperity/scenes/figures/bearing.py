@@ -1,5 +1,6 @@
 """A ball bearing on its page: how it carries its load, what moves, how quiet it is, which part is heard."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -9,7 +10,7 @@ from xarray import DataTree
 from asperity.diagnostics import Kurtogram, one_anderon
 from asperity.diagnostics.kurtogram import LEAST_POWER
 from asperity.reporting import chart, data, panels
-from asperity.reporting.figure import Lines, Of, figure
+from asperity.reporting.figure import Lines, Of, Series, figure
 from asperity.reporting.headline import Answers, HeadlineNumber
 from asperity.reporting.tables import Cell, ReportTable, Writer, in_digits, number_cells, table, text_cells
 from asperity.schema import Entry, bearing, provenance, rolling, spectra
@@ -40,6 +41,12 @@ def _element(tree: DataTree) -> str:
     return str(data.stated(tree, bearing.ELEMENT) or "ball")
 
 
+def _numbers(tree: DataTree) -> Iterator[Series]:
+    """Numbers of the balls or rollers, in a column that has their name."""
+    for series in Of(bearing.BALL)(tree):
+        yield replace(series, name=_element(tree))
+
+
 def _named(tree: DataTree, part: str) -> str:
     return f"{_element(tree)}s" if part == "ball" else NAMES[part]
 
@@ -67,7 +74,7 @@ def _round(radius: float, x: Any = 0.0, y: Any = 0.0, **look: Any) -> chart.Shap
 
 @figure(
     "The bearing and its load zone",
-    Of(bearing.BALL),
+    _numbers,
     Of(bearing.AZIMUTH),
     Of(bearing.BALL_LOAD, "load on the {ring} ring"),
 )
@@ -205,7 +212,7 @@ def along_roller(tree: DataTree, lines: Lines) -> chart.Drawn:
 
 @figure(
     "Films of oil",
-    Of(bearing.BALL),
+    _numbers,
     Of(bearing.AZIMUTH),
     Of(bearing.FILM_THICKNESS, "{ring} ring, in the middle"),
     Of(bearing.LEAST_FILM, "{ring} ring, least"),

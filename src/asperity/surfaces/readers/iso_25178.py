@@ -13,7 +13,9 @@ from xml.etree.ElementTree import Element
 import numpy as np
 
 from asperity.arguments import Array, NDArray, require
+from asperity.errors import OutOfRangeWarning
 from asperity.surfaces.readers import guards
+from asperity.surfaces.readers.belief import FEWEST_POINTS
 from asperity.surfaces.readers.hints import Hints
 from asperity.text_files import number_in
 from asperity.written_numbers import count_of
@@ -23,6 +25,8 @@ NAMES = ("UCHAR", "UINTEGER", "ULONGINT", "FLOAT", "CHAR", "INTEGER", "LONGINT",
 """Of these types in headers of BCR in ASCII."""
 BEYOND = {"<f4": 3.4e38, "<f8": 1.7e308}
 """Size from which a number with a floating point is none, by the proposal of 1993."""
+APART = 4.0
+"""Least distance of an end of a type from other heights, over their median one from the middle, that is told."""
 OLD = b"BCR"
 """What follows the first letter of a file by that proposal; ISO 25178-71 came after it."""
 
@@ -68,6 +72,8 @@ def read_sdf(path: Path, hints: Hints) -> list[guards.Surface]:
     stored = np.frombuffer(body, kind, count) if binary else _ascii_heights(body, count, source)
     raw = stored.reshape(shape)
     missing = missing_in(raw, kind, old=old)
+    if kind not in BEYOND:
+        _doubt_ends(raw[~missing], np.iinfo(kind), source)
     heights = guards.scaled(np.where(missing, np.zeros(1, raw.dtype), raw), unit, source)
     heights[missing] = np.nan
     return guards.surfaces_of(heights.T, (dx, dy), source)
@@ -101,6 +107,21 @@ def missing_in(raw: NDArray[Any], kind: str, *, old: bool) -> NDArray[np.bool_]:
     if signed:
         return (raw == ends.min) | np.isnan(raw)
     return ((raw == ends.max) & (ends.bits > 8)) | np.isnan(raw)
+
+
+def _doubt_ends(stored: NDArray[Any], ends: np.iinfo[Any], source: str) -> None:
+    """Warn of an end of a type that its revision does not reserve, where it stands away from all others."""
+    if stored.size < FEWEST_POINTS:
+        return
+    spread = max(float(np.median(np.abs(stored - np.median(stored)))), 1.0)
+    for end in (ends.min, ends.max):
+        at_end = stored == end
+        if at_end.any() and float(np.abs(stored[~at_end] - float(end)).min(initial=np.inf)) > APART * spread:
+            OutOfRangeWarning.warn(
+                f"{source}: {count_of(int(at_end.sum()), 'point')} of {stored.size} stored as {end}, an end "
+                "of the type, away from all others: taken for heights. If it marks what is missing, export "
+                "the file as text with NaN there."
+            )
 
 
 def _binary_header(data: bytes, source: str) -> tuple[dict[str, str], bytes]:
