@@ -75,8 +75,8 @@ def chunks_of(file: Path) -> Iterator[tuple[bytes, int, int]]:
 def form_of(file: Path, place: int) -> tuple[int, ...]:
     """Numbers of the piece `FORM` at a place of a WAV file.
 
-    The kind of its samples, channels, samples per second, bytes per second, bytes of a sample of all channels,
-    and bits of one.
+    The kind of its samples, channels, samples per second, bytes per second, bytes of a sample of all
+    channels, and bits of one.
     """
     with open(file, "rb") as opened:
         order = ">" if opened.read(4) in BACKWARDS else "<"

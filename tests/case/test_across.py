@@ -1,6 +1,7 @@
 """Where sections of wheel and rail touch as they lie: closed forms, signs, and what no contact can be."""
 
 import math
+import re
 
 import numpy as np
 import printed_sections
@@ -143,6 +144,29 @@ def test_sections_each_way_up_touch_in_one_place(tread, head, inclination):
 def test_a_flange_on_the_field_side_is_told(tread):
     with pytest.raises((CaseError, InputError), match=r"flange at 60 mm, on the field side.*Change the sign"):
         case_of(tread, HEAD)
+
+
+@pytest.mark.parametrize("inclination", ["0", "1:40", None])
+@pytest.mark.parametrize("way", [lambda line: line, turned], ids=["out", "into"])
+def test_sections_that_are_exchanged_are_refused_and_one_of_them_is_doubted(way, inclination):
+    """Where one alone meets nowhere, the message says so in the place of a remedy."""
+    head = section(
+        lambda y: -0.5 * y**2 / 0.3 - 0.7 * np.maximum(np.abs(y) - 27e-3, 0.0), first=-36e-3, last=36e-3
+    )
+    of_rail = "wheel.profile: its ends are 8.46 mm off its middle, .* 72 mm wide, .*section of the rail"
+    of_wheel = "track.rail_profile: 1.* mm are level beside a step of 2.* mm, .*section of the wheel"
+    for wheel, rail, told in ((way(head), None, of_rail), (None, way(FLANGED), of_wheel)):
+        with PhysicsWarning.caught() as caught:
+            try:
+                geometry_of(case_of(wheel, rail, rail_inclination=inclination))
+                said = [str(each.message) for each in caught]
+            except (CaseError, InputError) as error:
+                said = [str(error)]
+        assert any(re.search(told, each) for each in said), said
+    with pytest.raises(
+        (CaseError, InputError), match=r"sections exchanged: .* allowed: the wheel's under whe"
+    ):
+        geometry_of(case_of(way(head), way(FLANGED), rail_inclination=inclination))
 
 
 @pytest.mark.parametrize(("unit", "told"), [("m", "a section 120 m wide"), ("um", "a section 0.12 mm wide")])

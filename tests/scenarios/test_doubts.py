@@ -16,6 +16,7 @@ from asperity.reference.railways import TRACKS
 from asperity.running import prepare_case
 
 BALL, BEARING = small_cases.BALL | {"settling": "50 ms"}, small_cases.BEARING
+DENT = {"shape": "dent", "on": "outer", "length": "1 mm", "depth": "1 mm"}
 BODIES = small_cases.BODIES | {"laws": ["linear"], "settling": "50 ms"}
 BOGIE = {"type": "bogie", "mass": "0.5 kg", "masses": ["4 kg"], "springs": ["20 kN/m"], "distance": "100 mm"}
 CHAIN = {"type": "chain", "mass": "0.5 kg", "masses": ["0.1 kg", "4 kg"], "load": "60 N"}
@@ -65,6 +66,11 @@ def test_a_device_on_which_nothing_was_ever_run_is_told(monkeypatch):
         ),
         (BALL | {"surface": BALL["surface"] | {"rms": "0.04 nm"}}, "surface.rms = 0.04 nm: the smoothest"),
         (
+            BALL | {"surface": {"rms": "18 um", "longest": "0.4 mm", "shortest": "0.2 mm"}},
+            r"Heights of 1\d\.?\d* µm rms within the window are 1\d.* each: they touch at single peaks, "
+            r"which would yield, and laws were compared up to 10\. Are load and heights in the right units\?",
+        ),
+        (
             BALL | {"surface": {"corrugation": "1 um", "corrugation_wavelength": "40 m"}},
             "surface.corrugation_wavelength = 40000 mm: it is passed at 0.025 Hz",
         ),
@@ -90,6 +96,18 @@ def test_a_device_on_which_nothing_was_ever_run_is_told(monkeypatch):
         (
             BEARING | NU205 | {"fault": BEARING["fault"] | {"width": "9 mm"}},
             "fault.width = 9 mm: rollers have a length of 7.8 mm",
+        ),
+        (
+            BEARING | {"fault": DENT},
+            "fault.depth: the dent on the outer raceway stands out by 222 µm, .* which is .* µm. Is the unit",
+        ),
+        (
+            BEARING | {"fault": DENT | {"shape": "particle", "on": "ball"}},
+            "fault.depth: the particle on the balls stands out by 1000 µm, .* times the approach of the most",
+        ),
+        (
+            BEARING | {"fault": DENT | {"shape": "pit", "burr": "0.2 mm", "on": "inner"}},
+            "fault.burr: the pit on the inner raceway stands out by 200 µm",
         ),
         (
             BEARING | {"fault": [BEARING["fault"], BEARING["fault"] | {"angle": "90 deg", "depth": "50 nm"}]},

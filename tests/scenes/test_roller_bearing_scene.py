@@ -19,7 +19,7 @@ from asperity.scenarios import run_time
 from asperity.scenarios.prepared_bearing import expected, prepare_bearing, raceways_of
 from asperity.scenarios.roller_raceways import OnRollerRaceway, on_surface, surface_on
 from asperity.scenes.computed_bearing import compute_bearing
-from asperity.scenes.figures.bearing import _faults, along_roller, ball_contacts_table, films_table
+from asperity.scenes.figures.bearing import _faults, along_roller, ball_contacts_table, films_table, load_zone
 from asperity.serving.contact_preview import PressedSample
 from asperity.structures.ring import Ring
 from asperity.surfaces.faults import Fault
@@ -243,6 +243,7 @@ def test_what_lies_along_the_heaviest_roller_is_told_in_words_of_rollers(tree):
     panel = along_roller.drawn(tree).chart.panels[0]
     assert panel.marks[0].y.max() == pytest.approx(float(found.line_pressure.max()) / 1e9)
     assert ball_contacts_table(tree).title == "Contacts of the rollers"
+    assert next(iter(load_zone.drawn(tree).columns)) == "roller [1]"
     rows = dict(expected(prepare_bearing(as_case(CASE)))[0])
     assert {"heaviest load of a roller", "rollers that touch both rings"} < set(rows)
     assert "no rib" in rows["not in it"]

@@ -335,8 +335,8 @@ test_signals_that_are_none = refusals(
     (
         "a.wav",
         wav(bits=0),
-        "received 1 channel of 0 bits, 2 bytes a sample, 12000 samples per second, by its head; allowed: none "
-        "of them 0, and bytes for all bits. Its head is damaged",
+        "received 1 channel of 0 bits, 2 bytes a sample, 12000 samples per second, by its head; allowed: "
+        "none of them 0, and bytes for all bits. Its head is damaged",
     ),
     ("a.wav", wav(rate=0), "received 1 channel of 16 bits, 2 bytes a sample, 0 samples per second"),
     ("a.wav", wav(channels=0), "received 0 channels of 16 bits, 2 bytes a sample"),

@@ -259,8 +259,8 @@ def test_an_end_of_a_type_that_is_not_reserved_is_told_where_it_stands_alone(wri
         assert not told
     else:
         assert told == [
-            f"a.sdf: 2 points of 64 stored as {getattr(kind, end)}, an end of the type, away from all others: "
-            "taken for heights. If it marks what is missing, export the file as text with NaN there."
+            f"a.sdf: 2 points of 64 stored as {getattr(kind, end)}, an end of the type, away from all "
+            "others: taken for heights. If it marks what is missing, export the file as text with NaN there."
         ]
 
 

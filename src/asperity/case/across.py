@@ -51,6 +51,8 @@ FALLEN = 5e-3
 """Depth below its top at which the middle of a rail's head is sought, m."""
 OFF = 10e-3
 """How far that middle may lie from where places begin, m."""
+WIDEST_HEAD = 80e-3
+"""Widest head of a rail, m: they are 56 to 76 mm wide."""
 TREAD = 25e-3
 """Half the width of a tread about its running circle, m, which no flange reaches."""
 HOLLOW = 2e-3
@@ -205,6 +207,29 @@ def _doubts_of_head(key: str, y: Array, z: Array) -> Iterator[str]:
             )
 
 
+def _doubts_of_head_for_tread(key: str, y: Array, z: Array) -> Iterator[str]:
+    """Say where the section of a wheel has the shape of a rail's head, either way up, by points (n,), m."""
+    wide = float(y[-1] - y[0])
+    left, right = z[[0, -1]] - np.interp(0.5 * (y[0] + y[-1]), y, z)
+    if wide <= WIDEST_HEAD and left * right > 0.0 and (both := min(abs(left), abs(right))) > FALLEN:
+        yield (
+            f"{key}: its ends are {rounded(1e3 * both)} mm off its middle, both on one side of it, in a "
+            f"section {rounded(1e3 * wide)} mm wide, as heads of rails are. Is it the section of the rail?"
+        )
+
+
+def _doubts_of_tread_for_head(key: str, y: Array, z: Array) -> Iterator[str]:
+    """Say where the section of a rail has the shape of a tread with its flange, by its points (n,), m."""
+    away = np.abs(_away_from_rest(y, z))
+    level_width = float((away < FLANGE).mean() * (y[-1] - y[0]))
+    if level_width > WIDEST_HEAD and flange_of(y, z)[1]:
+        yield (
+            f"{key}: {rounded(1e3 * level_width)} mm are level beside a step of "
+            f"{rounded(1e3 * away.max())} mm, as a tread beside its flange; heads of rails are up to 76 mm "
+            "wide. Is it the section of the wheel?"
+        )
+
+
 # --- the contact
 
 
@@ -219,6 +244,7 @@ class Lying:
     flanged: bool = False  # whether it is a tread with its flange
     measured: bool = True  # or a circle
     doubts: tuple[str, ...] = ()  # what is hardly meant, in sentences
+    is_the_other: bool = False  # whether it has the shape of what it touches
 
 
 @dataclass(frozen=True, eq=False)
@@ -235,6 +261,11 @@ class Meeting:
         """On tread and rail head, m from their middle, positive towards the field side."""
         on_tread, on_head = (float(each.section(self.at)[1]) for each in (self.tread, self.head))
         return on_tread, on_head
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """What is hardly meant of both, in sentences."""
+        return self.tread.doubts + self.head.doubts
 
     def gap(self, across: Array) -> Array:
         """Gap (n,), m, at places across (n,), m from the contact."""
@@ -285,7 +316,7 @@ class Meeting:
             remedy = (
                 "A head that is a circle meets the flange: give the rail's section, or cut the flange off."
             )
-        remedy = next(iter(tread.doubts + head.doubts), remedy)
+        remedy = next(iter(anywhere.doubts), remedy)
         require(inside >= clear, keys, received, allowed, remedy)
         return cls(tread, head, float(found), float(inside))
 
@@ -335,6 +366,7 @@ def _lying(
     turned = False
     way = 0
     doubts = list[str]()
+    others = list[str]()
     if measured is None:
         y, z = _circle(radius)
     else:
@@ -345,6 +377,10 @@ def _lying(
         way, side = (0, 0) if head else flange_of(y, section.heights)
         turned = _is_head_down(y, section.heights) if head else way < 0
         section = replace(section, heights=-section.heights) if turned else section
+        if key in OF_TRAINS:
+            doubts_of_shape = _doubts_of_tread_for_head if head else _doubts_of_head_for_tread
+            others = list(doubts_of_shape(key, y, section.heights))
+            doubts += others
         if side:
             _refuse_strange_flange(key, section, y, side)
         if key in OF_TRAINS and not way and angle is not None and section.start is not None:
@@ -359,7 +395,7 @@ def _lying(
     remedy = next(iter(doubts), "Leave flanks out that are as steep, and check the units.")
     require((np.diff(across) > 0.0).all(), key, "a section that overhangs", allowed, remedy)
     spline = scipy.interpolate.make_interp_spline(across, np.column_stack([depth, y]), k=3)
-    return Lying(spline, turned, way != 0, measured is not None, tuple(doubts))
+    return Lying(spline, turned, way != 0, measured is not None, tuple(doubts), bool(others))
 
 
 def meeting_of(case: Case, clear: float | None = None) -> Meeting:
@@ -379,6 +415,10 @@ def meeting_of(case: Case, clear: float | None = None) -> Meeting:
     level_or_upright = None if inclination is None else 0.0
     upper = _lying(body.profile, body.across, tread, level_or_upright, shift, head=False)
     lower = _lying(over.profile, over.radius_across, head, inclination, 0.0, head=True)
+    received = "sections exchanged: the wheel's has the shape of a rail's head, the rail's that of a tread"
+    allowed = f"the wheel's under {tread}, the rail's under {head}"
+    exchanged = upper.is_the_other and lower.is_the_other
+    require(not exchanged, f"{tread} and {head}", received, allowed, "Exchange the two files.")
     clear = 0.5 * case.contact.window if clear is None else clear
     return Meeting.of(upper, lower, f"{tread} and {head}", clear)
 

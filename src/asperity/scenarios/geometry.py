@@ -139,16 +139,18 @@ def geometry_of(case: scene.Case) -> Geometry:
     n = window_cells(contact)
     h = contact.spacing
     section = parabola(contact, hertz.radius_y)
+    met = None
     if body.groove_radius is not None:
         section = groove_gap(across_window(contact), body.across, body.groove_radius)
     elif body.profile is not None or over.profile is not None or case.meeting is not None:
-        section, hertz = _measured_gap(case, hertz, load)
+        met = case.meeting or across.meeting_of(case)
+        section, hertz = _measured_gap(case, met, hertz, load)
     gap = parabola(contact, hertz.radius_x)[:, None] + section[None, :]
     shape = Geometry(gap, (h, h), hertz.modulus, hertz, load, load)
     carried = math.inf if contact.hardness is None else contact.hardness * h**2 * gap.size
     of_class = HIGHEST_FORCE * shape.class_load
     shape = replace(shape, largest_force=of_class if of_class < carried else HIGHEST_FORCE * load)
-    _check_half_space(case, hertz, load)
+    _check_half_space(case, met, hertz, load)
     _doubt_wheel(case)
     width = 2.0 * max(shape.semi_axes)
     for side, size in over.sides.items():
@@ -168,7 +170,7 @@ SECTIONS = (
 """What makes a contact smaller that sections as they were measured make too large."""
 
 
-def _check_half_space(case: scene.Case, hertz: Hertz, load: float) -> None:
+def _check_half_space(case: scene.Case, met: across.Meeting | None, hertz: Hertz, load: float) -> None:
     """Hold the contact under the load, and in the highest state given, to the half-space."""
     body = case.rolling
     top = case.contact.approaches
@@ -177,8 +179,7 @@ def _check_half_space(case: scene.Case, hertz: Hertz, load: float) -> None:
         asked.append((top[-1], f"an approach of {rounded(top[-1] * 1e6)} µm"))
     bent = abs(body.raceway_along)
     smallest = min(body.radius, body.across, case.rolled_over.radius_across, bent, hertz.radius_y)
-    measured = body.profile is not None or case.rolled_over.profile is not None or case.meeting is not None
-    lighter = SECTIONS if measured else "Lower the load"
+    lighter = "Lower the load" if met is None else " ".join((*met.doubts, SECTIONS))
     for approach, cause in asked:
         along, across = axes = hertz.semi_axes(approach)
         if body.groove_radius is None:
@@ -224,14 +225,13 @@ def _check_grid(cells: int, spacing: float, axes: tuple[float, float], load: flo
         )
 
 
-def _measured_gap(case: scene.Case, hertz: Hertz, load: float) -> tuple[Array, Hertz]:
+def _measured_gap(case: scene.Case, met: across.Meeting, hertz: Hertz, load: float) -> tuple[Array, Hertz]:
     """Gap of measured sections across the window, (n,), m, and the contact of its osculating parabola."""
     y = across_window(case.contact)
     both = " and ".join(across.section_keys(case))
-    met = case.meeting or across.meeting_of(case)
     for sentence in across.turned_sections(case, met):
         OutOfRangeWarning.warn(sentence, Grade.NOTE)
-    for sentence in (*met.tread.doubts, *met.head.doubts):
+    for sentence in met.doubts:
         OutOfRangeWarning.warn(sentence)
     gap = met.gap(y)
     allowed = "sections that touch in one place, convex against each other"

@@ -18,7 +18,7 @@ from asperity.scenarios.doubts import doubt_bearing
 from asperity.scenarios.problems import refuse
 from asperity.scenarios.raceway_films import films_on
 from asperity.scenarios.raceway_laws import OnRaceway
-from asperity.scenarios.raceway_limits import doubt_fault, doubt_surface
+from asperity.scenarios.raceway_limits import doubt_fault, doubt_rise, doubt_surface
 from asperity.scenarios.roller_raceways import on_surface, surface_on
 from asperity.speeds import at_fastest, slowest
 from asperity.store import Store
@@ -108,8 +108,11 @@ def prepare_bearing(case: BearingUnderLoad, source: str = "case") -> PreparedBea
             except InputError as error:
                 errors.append(_by_key(case, name, keys, error))
             apart = 2.0 * np.pi * radius / of.balls
-            for fault in faults if name != "ball" else ():
-                doubt_fault(fault, apart, NAMES[name], of.ELEMENT)
+            part = NAMES.get(name, of.ELEMENT)
+            for fault in faults:
+                doubt_rise(fault, contact.approach(load), part, of.ELEMENT)
+                if name != "ball":
+                    doubt_fault(fault, apart, part, of.ELEMENT)
     refuse(errors, source)
     return PreparedBearing(case, (made[0], made[1]), tuple(made[2:]), tuple(caught))
 

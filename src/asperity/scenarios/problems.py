@@ -8,7 +8,7 @@ import numpy as np
 from asperity.case.any_case import entries
 from asperity.case.scene import Case
 from asperity.contact.batched import find_device
-from asperity.errors import CaseError, InputError
+from asperity.errors import CaseError, InputError, OutOfRangeWarning
 from asperity.reduction.filter import FEWEST_POSITIONS
 from asperity.scenarios import reducing
 from asperity.scenarios.scene import PreparedCase
@@ -23,6 +23,8 @@ STEEPEST = 1.0
 """Rms slope up to which surfaces are taken for such: the half-space is for small ones."""
 ROUGHEST = 100.0
 """Rms height within the window up to which contacts are solved, in approaches of the smooth bodies."""
+COMPARED = 10.0
+"""The same up to which laws were compared with each other."""
 _UNITS = {
     "file": 'Are the heights in µm? Then set height_unit = "um", and the pixel with its unit.',
     "rms": 'Is rms in µm? Then write it so: rms = "0.5 um".',
@@ -106,6 +108,13 @@ def _problem_of_heights(prepared: PreparedCase) -> InputError | None:
         rough = float(np.mean([np.std(sample.heights[:nx, :ny]) for sample in maps]))
     approach = shape.hertz.approach(shape.load)
     if slope <= STEEPEST and rough <= ROUGHEST * approach:
+        if rough > COMPARED * approach:
+            OutOfRangeWarning.warn(
+                f"Heights of {rounded(1e6 * rough)} µm rms within the window are {rounded(rough / approach)} "
+                f"approaches of the smooth bodies, {rounded(1e6 * approach)} µm each: they touch at single "
+                f"peaks, which would yield, and laws were compared up to {COMPARED:g}. Are load and heights "
+                "in the right units?"
+            )
         return None
     received = f"heights with an rms slope of {rounded(slope)}"
     allowed = f"slopes up to {STEEPEST:g}"

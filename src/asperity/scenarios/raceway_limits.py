@@ -11,6 +11,8 @@ from asperity.surfaces.faults import Fault
 from asperity.surfaces.raceway import Raceway
 from asperity.written_numbers import rounded
 
+HELD = HIGHEST_FORCE ** (2.0 / 3.0)
+"""Approaches of a smooth contact up to which the states of laws reach."""
 REMEDY = 'Is the unit right? Waviness is written as "0.5 um", roughness as "20 nm".'
 
 
@@ -39,7 +41,7 @@ def doubt_surface(surface: Raceway, approach: float, rolls: str) -> None:
     steep = root_mean_square(slope)
     require(steep <= STEEPEST, "rms slope", rounded(steep), f"at most {STEEPEST:g}", REMEDY)
     highest = 0.5 * float(np.ptp(waves))
-    held = HIGHEST_FORCE ** (2.0 / 3.0) * approach
+    held = HELD * approach
     if highest > held:
         OutOfRangeWarning.warn(
             f"Waves all around of ± {rounded(highest * 1e6)} µm are {rounded(highest / approach)} times "
@@ -56,4 +58,16 @@ def doubt_fault(fault: Fault, apart: float, part: str, rolls: str) -> None:
             f"fault.length: the {fault.shape} on the {part} is {length * 1e3:.4g} mm long, the {rolls}s are "
             f"{apart * 1e3:.4g} mm apart: two or more are in it at once, and no {rolls} strikes it alone. "
             "Is the unit right?"
+        )
+
+
+def doubt_rise(fault: Fault, approach: float, part: str, rolls: str) -> None:
+    """Warn of a fault that stands out of what `part` names by more than laws cover of an approach, m."""
+    held = HELD * approach
+    if fault.highest > held:
+        OutOfRangeWarning.warn(
+            f"fault.{'burr' if fault.burr else 'depth'}: the {fault.shape} on the {part} stands out by "
+            f"{rounded(fault.highest * 1e6)} µm, {rounded(fault.highest / approach)} times the approach of "
+            f"the most loaded {rolls}, {rounded(approach * 1e6)} µm: {rolls}s come down harder than the laws "
+            f"cover, which is {rounded(held * 1e6)} µm. Is the unit right?"
         )

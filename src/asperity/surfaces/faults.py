@@ -145,6 +145,16 @@ class Fault:
         wave = 2.0 * self.burr_width if self.burr else math.inf
         return min(length, wave), min(width, wave)
 
+    @property
+    def highest(self) -> float:
+        """Height by which it stands out of the surface, m: of a particle, a rim, a burr, or in a map."""
+        if isinstance(self.map, HeightMap):
+            return max(float(self.map.heights.max()), 0.0)
+        if self.shape == "dent":
+            # volumes over π times the half axes: d/3 of d (1 − ρ²)², and h w (1 + w/2) of h sin²(π (ρ − 1)/w)
+            return self.rim * self.depth / (3.0 * self.rim_width * (1.0 + 0.5 * self.rim_width))
+        return self.depth if self.shape == "particle" else self.burr
+
     def heights(self, along: ArrayLike, across: ArrayLike) -> Array:
         """Heights, m, at places along and across the path from its middle, m; arrays are broadcast."""
         x, y = np.broadcast_arrays(np.asarray(along, dtype=float), np.asarray(across, dtype=float))
@@ -157,7 +167,6 @@ class Fault:
         a = 0.5 * self.length
         b = 0.5 * self.width
         depth = self.depth
-        wide = self.rim_width
         rho = np.hypot(x / a, y / b)
         bowl = np.clip(1.0 - rho**2, 0.0, None)
         if self.shape in HOLLOWS:
@@ -168,9 +177,8 @@ class Fault:
             return floor + self.burr * np.where((beyond > 0.0) & (beyond < 1.0), wave, 0.0)
         if self.shape in ("mark", "particle"):
             return -depth * bowl if self.shape == "mark" else depth * bowl**2
-        # volumes over π times the half axes: d/3 of d (1 − ρ²)², and h w (1 + w/2) of h sin²(π (ρ − 1)/w)
-        rim = self.rim * depth / (3.0 * wide * (1.0 + 0.5 * wide))
-        return rim * np.sin(np.pi * np.clip((rho - 1.0) / wide, 0.0, 1.0)) ** 2 - depth * bowl**2
+        rim = np.sin(np.pi * np.clip((rho - 1.0) / self.rim_width, 0.0, 1.0)) ** 2
+        return self.highest * rim - depth * bowl**2
 
     def outline(self, along: ArrayLike, across: ArrayLike) -> tuple[Array, Array]:
         """Distance from the outline of a pit or spall, m, positive outside, and its normal's part along.

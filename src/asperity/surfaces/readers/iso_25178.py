@@ -26,7 +26,7 @@ NAMES = ("UCHAR", "UINTEGER", "ULONGINT", "FLOAT", "CHAR", "INTEGER", "LONGINT",
 BEYOND = {"<f4": 3.4e38, "<f8": 1.7e308}
 """Size from which a number with a floating point is none, by the proposal of 1993."""
 APART = 4.0
-"""Least distance of an end of a type from other heights, over their median one from the middle, that is told."""
+"""Distance of an end of a type from other heights, over their median one from the middle, that is told."""
 OLD = b"BCR"
 """What follows the first letter of a file by that proposal; ISO 25178-71 came after it."""
 
