@@ -226,6 +226,19 @@ def test_nothing_bars_anybody(browser, members_in_this_process, own_cache, page)
         assert_accessible(shown)
 
 
+LONG = """() => { for (const each of document.querySelectorAll(".numbers dd.big"))
+  each.textContent = "0.000101\u00a0µm/s"; }"""
+
+
+def test_long_numbers_at_the_head_of_a_page_are_no_wider_than_a_phone(browser, runs, tmp_path):
+    page = report(runs(BEARING), tmp_path)
+    with pages_of(browser, page.as_uri()) as opened:
+        shown = opened(390, "light")
+        assert shown.locator(".numbers dd.big").count() > 2
+        shown.evaluate(LONG)
+        assert shown.evaluate("document.documentElement.scrollWidth") <= 390
+
+
 # --- data sheets of bearings
 
 

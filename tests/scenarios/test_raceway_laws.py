@@ -195,6 +195,8 @@ def test_pit_narrower_than_the_contact_takes_a_part_of_it_away():
     on = OnRaceway(CONTACT, raceway_on(CONTACT, LOAD, 1.0 * MM, faults=(PIT,)), LOAD)
     with pytest.warns(OutOfRangeWarning, match=r"under 68 N; else they have 17 N .* has 16\.\d N, and 272 N"):
         law, middle = laws_on(on.surface), np.pi * MM
+    with pytest.warns(OutOfRangeWarning, match="At a fault areal holds for .* under 68 N; else it has 17 N"):
+        laws_on(on.surface, "areal")
     assert 0 < on.around.counts.solved < 110 * len(on.approaches)  # of 720
     for away, approach in product((0.0, 0.07 * MM, 0.12 * MM), (APPROACH, CONTACT.approach(4 * LOAD))):
         exact = solved(lambda x, y, x0=away: -0.28 * MM * (np.hypot(x + x0, y) < 0.09 * MM), approach)

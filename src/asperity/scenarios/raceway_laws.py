@@ -443,9 +443,10 @@ class OnRaceway:
             solved = self.space.solve(gap, approach, rtol=rtol_for(self.accuracy), edges=edges)
             worst = max(worst, abs(followed / solved.force - 1.0) if solved.force else 1.0)
             told.append(f"{in_newtons(followed)} where the solved contact has {in_newtons(solved.force)}")
+        holds, have = ("hold", "they have") if len(laws) > 1 else ("holds", "it has")
         message = (
-            f"At a fault {' and '.join(laws)} hold for a contact under {in_newtons(self.load)}; else they "
-            f"have {', and '.join(told)}. The law table has no such limit."
+            f"At a fault {' and '.join(laws)} {holds} for a contact under {in_newtons(self.load)}; else "
+            f"{have} {', and '.join(told)}. The law table has no such limit."
         )
         grade = Grade.WARNING if worst > FAULT_OFF else Grade.NOTE
         OutOfRangeWarning.warn(message, grade)
