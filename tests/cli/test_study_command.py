@@ -252,7 +252,10 @@ def test_a_run_says_what_helps_and_finds_it_again(monkeypatch):
     call("run", "rail.toml", "-o", "out")
     assert "What helps?" not in Path("out/report.html").read_text(encoding="utf-8")
     told = words_of(call("run", "rail.toml", "-o", "out", "--what-helps").stdout)
-    assert re.search(r"What each change does, the quietest first .* a fifth slower −\d\.\d", told)
+    assert re.search(
+        r"What each change does, the quietest first .* a fifth slower −\d\.\d.* in dB\(A\) re 1 pW; below,",
+        told,
+    )
     assert "What helps?" in Path("out/report.html").read_text(encoding="utf-8")
     found = asperity.open_result("out")["effects"]
     assert float(found["effect"].sel(radiator="total", variant="a fifth slower")) < 0.0

@@ -308,9 +308,10 @@ def _blocks(told: Sequence[tuple[str, Effects]], left: str) -> Iterator[ReportTa
 
 
 def print_effects(found: ReportTable, words: str = "") -> None:
-    """Print what each variant does, at a place on other axes that words name."""
+    """Print what each variant does, at a place on other axes that words name, and in which units."""
     rows = [[cell.text for cell in row] for row in found.rows]
     say_table(f"{found.title}{f', {words}' if words else ''}", found.head, rows, width=WIDTH)
+    say(found.note)
 
 
 # --- what is printed
