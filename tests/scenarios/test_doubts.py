@@ -98,6 +98,10 @@ def test_a_device_on_which_nothing_was_ever_run_is_told(monkeypatch):
             "fault.width = 9 mm: rollers have a length of 7.8 mm",
         ),
         (
+            BEARING | NU205 | {"fault": BEARING["fault"] | {"depth": "3.8 mm"}},
+            "fault.depth = 3.8 mm: rollers have a diameter of 7.5 mm",
+        ),
+        (
             BEARING | {"fault": DENT},
             "fault.depth: the dent on the outer raceway stands out by 222 µm, .* which is .* µm. Is the unit",
         ),
