@@ -268,3 +268,19 @@ test_a_fault_off_the_raceway_is_refused_before_the_run = refusals(
     ),
     of=lambda fault: prepare_bearing(as_case(CASE | {"fault": fault})),
 )
+
+
+def test_a_bearing_without_a_name_has_defaults_that_are_told():
+    sizes = {"rollers": 13, "roller_diameter": "7 mm", "roller_length": "8 mm", "pitch_diameter": "39 mm"}
+    given = sizes | {"taper": "4 deg", "contact_angle": "14 deg", "crowning": "logarithmic"}
+    keys = {"kind": "roller-bearing", "radial": "1 kN", "axial": "1 kN", "bearing": given}
+    rows = {row["key"].removeprefix("bearing."): row for row in as_case(keys).parameters()}
+    told = {name: (rows[name]["value"], rows[name]["default"]) for name in ("taper", "slices", "crowning")}
+    assert told == {"taper": ("4 deg", "0 deg"), "slices": ("41", "41"), "crowning": ("logarithmic",) * 2}
+    assert rows["crowning"]["is_default"]
+    assert not rows["rollers"]["is_default"]
+    sizes = {"balls": 9, "ball_diameter": "7.94 mm", "pitch_diameter": "39 mm"}
+    of_balls = as_case({"kind": "ball-bearing", "radial": "1 kN", "bearing": sizes}).parameters()
+    rows = {row["key"]: row["value"] for row in of_balls}
+    assert rows["bearing.arch_angle"] == "grooves of one arc"
+    assert rows["bearing.inner_conformity"] == "0.52"

@@ -33,8 +33,10 @@ class NamedBearing(Section):
         return self.MODEL(**given) if self.name is None else self.MODEL.named(self.name, **given)
 
     def default_of(self, name: str) -> Any:
-        """Value of a key that is left out: a dimension of the named bearing."""
-        if name in self.DIMENSIONS and self.name is not None and name not in self.given_names:
+        """Value of a key that is left out: that of the named bearing, or of any that has no name."""
+        if name in self.DIMENSIONS and self.name is None:
+            return getattr(self.MODEL, name, None)
+        if name in self.DIMENSIONS and name not in self.given_names:
             return getattr(self.bearing, name)
         return super().default_of(name)
 

@@ -147,6 +147,7 @@ class BallBearing:
         "angle at which a ball touches both flanks of each groove, a gothic arch",
         _ANGLES,
         default=None,
+        otherwise="grooves of one arc",
     )
     preload: float = parameter(
         Quantity("N", at_least=0), "0 N", "constant axial force, as of a spring", _LOADS, default=0.0
