@@ -169,6 +169,18 @@ def test_sections_that_are_exchanged_are_refused_and_one_of_them_is_doubted(way,
         geometry_of(case_of(way(head), way(FLANGED), rail_inclination=inclination))
 
 
+def test_treads_and_worn_heads_are_not_taken_for_each_other():
+    """A narrow tread with the beginning of its flange, a wide one; a head with a flank on one side."""
+    narrow = section(
+        lambda y: -y / 20.0 + 0.5 * np.maximum(-y - 24e-3, 0.0) - 0.5 * np.maximum(y - 26e-3, 0.0)
+    )
+    flank = section(lambda y: -0.5 * y**2 / 0.3 - 2.0 * np.maximum(-y - 28e-3, 0.0), first=-36e-3, last=36e-3)
+    for wheel, rail in ((narrow, HEAD), (FLANGED, HEAD), (FLANGED, flank)):
+        met = across.meeting_of(case_of(wheel, rail, rail_inclination="1:40"))
+        assert not met.tread.is_the_other
+        assert not met.head.is_the_other
+
+
 @pytest.mark.parametrize(("unit", "told"), [("m", "a section 120 m wide"), ("um", "a section 0.12 mm wide")])
 @pytest.mark.parametrize("part", ["wheel", "rail"])
 def test_a_section_in_a_wrong_unit_is_refused_with_the_cause(unit, told, part, tmp_path):

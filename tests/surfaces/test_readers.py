@@ -264,6 +264,12 @@ def test_an_end_of_a_type_that_is_not_reserved_is_told_where_it_stands_alone(wri
         ]
 
 
+@pytest.mark.parametrize("code", [0, 4])
+def test_heights_that_reach_the_end_of_a_type_are_not_doubted(write, code):
+    stored = np.iinfo(SDF_TYPES[code]).max - np.arange(64).reshape(8, 8) % 9
+    assert not np.isnan(read_surface(write("a.sdf", sdf_binary(stored, code))).heights).any()
+
+
 @pytest.mark.parametrize("file_format", ["ASCII", "BINARY"])
 @pytest.mark.parametrize("revision", ["ISO_1_0", "ISO_2_0", "BCR_1_0"])
 def test_an_independent_writer_is_understood(tmp_path, revision, file_format):
