@@ -172,7 +172,9 @@ def test_sections_that_are_exchanged_are_refused_and_one_of_them_is_doubted(way,
 def test_treads_and_worn_heads_are_not_taken_for_each_other():
     """A narrow tread with the beginning of its flange, a wide one; a head with a flank on one side."""
     narrow = section(
-        lambda y: -y / 20.0 + 0.5 * np.maximum(-y - 24e-3, 0.0) - 0.5 * np.maximum(y - 26e-3, 0.0)
+        lambda y: -y / 20.0 + 0.6 * (np.maximum(-y - 24e-3, 0.0) - np.maximum(y - 26e-3, 0.0)),
+        first=-38e-3,
+        last=38e-3,
     )
     flank = section(lambda y: -0.5 * y**2 / 0.3 - 2.0 * np.maximum(-y - 28e-3, 0.0), first=-36e-3, last=36e-3)
     for wheel, rail in ((narrow, HEAD), (FLANGED, HEAD), (FLANGED, flank)):

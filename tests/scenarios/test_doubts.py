@@ -3,6 +3,7 @@
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import small_cases
@@ -14,6 +15,7 @@ from asperity.contact.batched import UNTRIED, processor
 from asperity.errors import OutOfRangeWarning, PhysicsWarning
 from asperity.reference.railways import TRACKS
 from asperity.running import prepare_case
+from asperity.surfaces.heightmap import HeightMap
 
 BALL, BEARING = small_cases.BALL | {"settling": "50 ms"}, small_cases.BEARING
 DENT = {"shape": "dent", "on": "outer", "length": "1 mm", "depth": "1 mm"}
@@ -130,6 +132,26 @@ def test_a_device_on_which_nothing_was_ever_run_is_told(monkeypatch):
 def test_a_size_in_a_wrong_unit_is_doubted_with_what_it_is_beside(keys, words):
     told = doubts(as_case(keys))
     assert any(re.search(words, each) for each in told), told
+
+
+@pytest.mark.parametrize(
+    ("keys", "words"),
+    [
+        (BEARING | {"fault": DENT | {"shape": "pit", "depth": "0.28 mm"}}, "stands out"),
+        (BEARING | {"fault": DENT | {"depth": "10 um"}}, "stands out"),
+        (BALL | {"surface": {"rms": "8 um", "longest": "0.4 mm", "shortest": "0.2 mm"}}, "single peaks"),
+    ],
+)
+def test_what_is_deep_or_rough_within_what_laws_cover_is_not_doubted(keys, words):
+    assert not [each for each in doubts(as_case(keys)) if words in each]
+
+
+def test_a_map_of_a_fault_that_stands_out_is_doubted():
+    heights = np.zeros((21, 21))
+    heights[8:13, 8:13] = 0.2e-3
+    fault = {"on": "outer", "shape": "map", "map": HeightMap(heights, (50e-6, 50e-6))}
+    (told,) = [each for each in doubts(as_case(BEARING | {"fault": fault})) if "stands out" in each]
+    assert told.startswith("fault.map: the map on the outer raceway stands out by 200 µm")
 
 
 def test_half_the_weight_of_a_bogie_is_on_each_of_its_contacts():

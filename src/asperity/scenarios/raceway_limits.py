@@ -65,8 +65,9 @@ def doubt_rise(fault: Fault, approach: float, part: str, rolls: str) -> None:
     """Warn of a fault that stands out of what `part` names by more than laws cover of an approach, m."""
     held = HELD * approach
     if fault.highest > held:
+        key = "burr" if fault.burr else "map" if fault.shape == "map" else "depth"
         OutOfRangeWarning.warn(
-            f"fault.{'burr' if fault.burr else 'depth'}: the {fault.shape} on the {part} stands out by "
+            f"fault.{key}: the {fault.shape} on the {part} stands out by "
             f"{rounded(fault.highest * 1e6)} µm, {rounded(fault.highest / approach)} times the approach of "
             f"the most loaded {rolls}, {rounded(approach * 1e6)} µm: {rolls}s come down harder than the laws "
             f"cover, which is {rounded(held * 1e6)} µm. Is the unit right?"
