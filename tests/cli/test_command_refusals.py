@@ -192,7 +192,7 @@ REFUSED = [
     (f"{HEARD} commas.csv", "commas in numbers and between them; allowed: commas of one kind. Export"),
     (f"{HEARD} uneven.txt", "uneven.txt: received 1 cell in line 2; allowed: 2."),
     (f"{HEARD} none.txt", "none.txt: received no numbers"),
-    (f"{HEARD} bad.wav", "an intact wav file"),
+    (f"{HEARD} bad.wav", "a WAV file without its piece … The file is damaged or truncated"),
     (f"{HEARD} signal.npy --band '1 kHz'", "--band: received 1 kHz"),
     ("bearing 6205 --speed '0.1 Hz' --signal signal.npy --rate '12 kHz'", "Record longer."),
     # studies
