@@ -249,6 +249,18 @@ def test_a_rib_that_is_hardly_meant_is_doubted(stiffness, told):
     assert any(each.startswith("bearing.rib_stiffness = ") for each in said) == told
 
 
+@pytest.mark.parametrize(
+    ("taper", "told"), [("4 deg", False), ("5 deg", False), ("3 deg", True), ("6 deg", True)]
+)
+def test_rollers_whose_cones_have_another_apex_are_doubted(taper, told):
+    """Of one apex on the axis tan β = D/d_m sin(α − β): 4.5 degrees here."""
+    case = as_case(CASE | {"axial": "1 kN", "bearing": TAPER | {"taper": taper}})
+    said = [str(each.message) for each in prepare_bearing(case).caught]
+    assert (
+        any(each.startswith(f"bearing.taper = {taper}: rollers that roll as cones") for each in said) == told
+    )
+
+
 TILTED = {"tilt": "-1 mrad", "rotating_tilt": "0.2 mrad"}
 
 

@@ -20,6 +20,7 @@ from asperity.scenarios.usual import OF_ANYTHING, OF_BEARINGS, OF_TRAINS, UNIT, 
 from asperity.speeds import slowest
 from asperity.structures.ball_bearing import STATIC_PRESSURE
 from asperity.structures.body import GRAVITY
+from asperity.structures.roller_bearing import AnyBearing, RollerBearing
 from asperity.structures.track import Track
 from asperity.structures.track_parameters import LAYERS
 from asperity.units import written
@@ -78,6 +79,8 @@ OF_VERTICAL = 0.01, 10.0
 """Times the vertical stiffness between which the lateral one of a layer lies, and that against roll."""
 LIGHTLY_LOADED = 0.2
 """Share of the weight of the shaft that a bearing carries at least."""
+BESIDE_APEX = 0.2
+"""Share of a taper by which rollers are off the one apex at which cones roll: printed angles are rounded."""
 HEAVIEST = 1e5
 """Times the mass of all balls that no ring weighs with all that moves with it."""
 
@@ -353,6 +356,7 @@ def doubt_bearing(case: BearingUnderLoad) -> None:
     _doubt_usual(case, OF_ANYTHING | OF_BEARINGS)
     _doubt_run_in(case.settling, case.duration)
     _doubt_springs(case, contact.tangent_stiffness(contact.approach(heaviest)))
+    _doubt_taper(of)
     if case.rotating > TURNING_LOAD * load:
         _warn("rotating", case.rotating, "N", f"all that stands still is {in_newtons(load)}")
     _doubt_damping("contact_damping", case.contact_damping, contact, heaviest, of.ball_mass)
@@ -393,6 +397,17 @@ def _doubt_springs(case: BearingUnderLoad, contact: float) -> None:
         if stiffness and not LOOSE_SPRING <= stiffness / contact <= RIGID_SPRING:
             told = f"a contact of the bearing has {written(contact, 'N/m', 'MN/m', exactly=False)}"
             _warn(key, stiffness, "N/m", told, "MN/m")
+
+
+def _doubt_taper(of: AnyBearing) -> None:
+    """Warn of tapered rollers that cannot roll: those that do have the apex of the raceways, on the axis."""
+    if not isinstance(of, RollerBearing) or not of.taper:
+        return
+    inclined = of.contact_angle - 0.5 * of.taper
+    rolling = 2.0 * math.atan(of.roller_diameter / of.pitch_diameter * math.sin(inclined))
+    if abs(of.taper / rolling - 1.0) > BESIDE_APEX:
+        told = f"rollers that roll as cones with one apex have {rounded(math.degrees(rolling))} deg"
+        _warn("bearing.taper", of.taper, "rad", told, "deg")
 
 
 def _doubt_damping(key: str, damping: float, contact: Hertz, load: float, mass: float) -> None:
