@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+import asperity
 from asperity import RollerBearing
 from asperity.case.cases import as_case
 from asperity.errors import CaseError, InputError
@@ -15,6 +16,7 @@ from asperity.reduction.texture import StateTexture
 from asperity.rolling.bearing import BearingRings, roll_bearing
 from asperity.scenarios.prepared_bearing import expected, prepare_bearing
 from asperity.scenes.computed_bearing import compute_bearing
+from asperity.scenes.figures.bearing import ball_contacts_table
 from asperity.speeds import SpeedCourse
 from asperity.structures.ring import Ring
 from refusals import refusals
@@ -289,6 +291,21 @@ def test_a_case_runs_tilted():
         still.append(case.static.displacement[:, 0].mean())
     assert found[1] - found[0] == pytest.approx(still[1] - still[0], rel=0.05)
     assert found[1] < 0.98 * found[0]  # ends are pressed
+
+
+def test_the_report_tells_what_the_rib_of_tapered_rollers_pushes():
+    tapered, level = (
+        asperity.run(
+            CASE | {"axial": "1 kN", "bearing": TAPER | keys, "outer_raceway": None, "duration": "12 ms"}
+        )
+        for keys in ({}, {"taper": "0 deg", "rib_stiffness": None})
+    )
+    force = tapered["rolling/rib_force"].values
+    ends = f"{force.min():.3g} to {force.max():.3g} N"
+    assert (
+        f"As it runs the rib pushes rollers along their axes by {ends}. " in ball_contacts_table(tapered).note
+    )
+    assert "rib pushes" not in ball_contacts_table(level).note
 
 
 test_tilts_that_cannot_be_are_refused = refusals(

@@ -506,9 +506,18 @@ def ball_contacts_table(tree: DataTree) -> ReportTable:
     note = (
         f"At rest, the first {element} below the load; half axes along and across the raceway. The inner "
         f"ring as a {element} passes, how far it moved and its stiffness: "
-        f"{'; '.join(told)}. {data.stated(tree, bearing.LEFT_OUT) or ''}"
+        f"{'; '.join(told)}. {_rib_of(tree)}{data.stated(tree, bearing.LEFT_OUT) or ''}"
     )
     return table("ball_contacts", f"Contacts of the {element}s", columns, note)
+
+
+def _rib_of(tree: DataTree) -> str:
+    """What the rib pushes tapered rollers by in the run."""
+    if not data.present(tree, bearing.RIB_FORCE):
+        return ""
+    forces = data.of_law(tree, bearing.RIB_FORCE, _main(tree))
+    ends = between(rounded(forces.min(), 3), rounded(forces.max(), 3))
+    return f"As it runs the rib pushes rollers along their axes by {ends} N. "
 
 
 def ball_sliding_table(tree: DataTree) -> ReportTable | None:
