@@ -24,7 +24,7 @@ def two_bodies(shape, spacing, friction, first, second=None):
     pair = [np.array(each) for each in (first, second or first)]
     shear = 2.0 / sum(1.0 / g for g, _ in pair)
     poisson = 0.5 * shear * sum(nu / g for g, nu in pair)
-    bodies = tuple(Material("body", 2.0 * g * (1.0 + nu), nu, 7850.0) for g, nu in pair)
+    bodies = tuple(Material("body", 2.0 * g * (1.0 + nu), nu, 1.0) for g, nu in pair)
     return FrictionalHalfSpace(HalfSpace(shape, spacing, shear / (1.0 - poisson)), bodies, friction)
 
 

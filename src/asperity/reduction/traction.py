@@ -142,8 +142,7 @@ def traction_states(
     if uncoupled.unlikeness:  # a warning tells what is neglected, once
         uncoupled.shift(half_space.solve(gap, approach=r[-1]))
     g, nu = uncoupled.shear_modulus, uncoupled.poisson_ratio
-    dense = max(each.density for each in bodies)  # a material has one; no contact asks for it
-    both = Material("both", 2.0 * g * (1.0 + nu), nu, dense)
+    both = Material("both", 2.0 * g * (1.0 + nu), nu, 1.0)
     stuck = FrictionalHalfSpace(half_space, (both, both), UNLIMITED)
 
     def pressed(sample: Array) -> list[Array]:
