@@ -13,7 +13,7 @@ import numpy as np
 
 from asperity.arguments import Array, NDArray, nearest, no_file, shown
 from asperity.errors import InputError
-from asperity.reference.materials import MATERIALS, Material
+from asperity.reference.materials import MATERIALS, Material, solid
 from asperity.text_files import BACKSLASH
 from asperity.units import factor, quantity, written
 from asperity.written_numbers import count_of, rounded
@@ -400,8 +400,6 @@ class ListOf(ValueKind):
 
 GIVEN = "given in the case"
 """Source of a material that states none."""
-FASTEST_SOUND = 36e3
-"""m/s, that sound exceeds in no solid (Trachenko et al., Sci. Adv. 6 (2020) eabc8662); in diamond, half."""
 _SOLIDS = "solids that roll lie between"
 _OF_A_MATERIAL: dict[str, tuple[ValueKind, str]] = {
     "name": (Text(), ""),
@@ -454,14 +452,9 @@ def _own_material(given: Mapping[Any, Any], origin: Origin) -> Material:
             errors += outside(name, read[name], kind, within)
         except InputError as error:
             errors.append(error.about(name))
-    if not errors and (sound := math.sqrt(read["youngs_modulus"] / read["density"])) > FASTEST_SOUND:
-        received = f"values by which sound runs along a bar at {rounded(sound)} m/s"
-        allowed = f"at most {FASTEST_SOUND:g} m/s, as in any solid"
-        remedy = 'Are both units right? Steel has "210 GPa" and "7850 kg/m^3".'
-        errors.append(InputError("youngs_modulus and density", received, allowed, remedy))
     if errors:
         raise Problems(errors)
-    return Material(**({"name": name_of_numbers(read["youngs_modulus"]), "citation": GIVEN} | read))
+    return solid(Material(**({"name": name_of_numbers(read["youngs_modulus"]), "citation": GIVEN} | read)))
 
 
 def name_of_numbers(youngs_modulus: float) -> str:

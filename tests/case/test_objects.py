@@ -407,7 +407,7 @@ def test_all_that_is_wrong_is_said_at_once():
     ):
         assert message in text
     swift = {"youngs_modulus": "70 GPa", "poisson_ratio": 0.3, "density": "2.7 kg/m^3"}
-    with pytest.raises(CaseError, match="sound runs along a bar at 161000 m/s; allowed: at most 36000 m/s"):
+    with pytest.raises(CaseError, match=r"beam\.material: .* bar at 161000 m/s; allowed: at most 36000"):
         as_case(with_beam_of(swift))
     with pytest.raises(CaseError, match=r'received \[\].*or numbers: \{ youngs_modulus = "72 GPa"'):
         as_case(with_beam_of([]))

@@ -1,8 +1,13 @@
 """Named elastic materials, each with its source."""
 
+import math
 from dataclasses import dataclass
 
-from asperity.arguments import one_of, positive, real
+from asperity.arguments import one_of, positive, real, require
+from asperity.written_numbers import rounded
+
+FASTEST_SOUND = 36e3
+"""m/s, that sound exceeds in no solid (Trachenko et al., Sci. Adv. 6 (2020) eabc8662); in diamond, half."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +52,17 @@ class Material:
         what = f"Poisson's ratio of {self.name}"
         allowed = "above -1, at most 0.5"
         real(what, self.poisson_ratio, allowed, above=-1.0, at_most=0.5)
+
+
+def solid(material: Material) -> Material:
+    """Return a material that a solid can have; a rigid one, as scripts compute with, is none."""
+    sound = math.sqrt(material.youngs_modulus / material.density)
+    what = f"Young's modulus over density of {material.name}"
+    received = f"values by which sound runs along a bar at {rounded(sound)} m/s"
+    allowed = f"at most {FASTEST_SOUND:g} m/s, as in any solid"
+    remedy = 'Are both units right? Steel has "210 GPa" and "7850 kg/m^3".'
+    require(sound <= FASTEST_SOUND, what, received, allowed, remedy)
+    return material
 
 
 MATERIALS: dict[str, Material] = {
