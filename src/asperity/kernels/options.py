@@ -8,8 +8,8 @@ Entries take the compiler longer than most kernels: numba makes two, for Python 
 every array of every named tuple in them. So only what Python calls has one, and none has one for C. What
 has none is optimised, and made machine code, as part of what has one alone: numba would do both at every
 kernel, for it and for all that it calls. Python looks for no garbage meanwhile, which took a third of the
-time before LLVM's; the type of an operator on numbers is looked for once, which took a fifth, and passes
-over what kernels do not contain are left out.
+time before LLVM's; the type of an operator on numbers is looked for once, and passes over what kernels do
+not contain are left out: 6 to 8 % of a compilation.
 
 What numba would keep are pickles, and machine code that is run as it is. So only files are read that are
 as they were written, by their seal, in a folder that nobody but the user can write to; a file is named by all

@@ -109,7 +109,7 @@ def missing_in(raw: NDArray[Any], kind: str, *, old: bool) -> NDArray[np.bool_]:
     return ((raw == ends.max) & (ends.bits > 8)) | np.isnan(raw)
 
 
-def _doubt_ends(stored: NDArray[Any], ends: np.iinfo[Any], source: str) -> None:
+def _doubt_ends(stored: NDArray[Any], ends: "np.iinfo[Any]", source: str) -> None:
     """Warn of an end of a type that its revision does not reserve, where it stands away from all others."""
     if stored.size < FEWEST_POINTS:
         return
