@@ -42,11 +42,13 @@ def _parts(values: Array) -> Array:
 
 def _foreteller(parts: Array) -> Array:
     """Weights (ORDER + 1,) of samples, the last one first, by which what is foretold is taken off one."""
-    best, least = np.zeros(ORDER + 1), np.inf
+    best = np.zeros(ORDER + 1)
+    least = np.inf
     for part in parts:
         rows = np.lib.stride_tricks.sliding_window_view(part, ORDER + 1)
         weights, *_ = np.linalg.lstsq(rows[:, :-1], rows[:, -1], rcond=None)
         missed = float(np.square(rows[:, -1] - rows[:, :-1] @ weights).sum())
         if missed < least:
-            best, least = np.append(-weights, 1.0), missed
+            best = np.append(-weights, 1.0)
+            least = missed
     return best[::-1]

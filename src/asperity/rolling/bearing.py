@@ -370,15 +370,20 @@ class _Turning:
         It is pressed outwards by a force, N, along the normal, or by a spring of that force.
         """
         of = self.bearing
-        rows, pulled, held = np.array([[1.0], [-1.0]]), np.ones(1), np.zeros(1)
+        rows = np.array([[1.0], [-1.0]])
+        pulled = np.ones(1)
+        held = np.zeros(1)
         if len(self.flanks) > 1:
-            cosine, sine = math.cos(self.contact_angle), math.sin(self.contact_angle)
+            cosine = math.cos(self.contact_angle)
+            sine = math.sin(self.contact_angle)
             normals = [(cosine, flank * sine) for flank in self.flanks]
             rows = np.array([(sign * out, sign * up) for out, up in normals for sign in (1.0, -1.0)])
-            pulled, held = np.array([1.0 / cosine, 0.0]), np.zeros(2)
+            pulled = np.array([1.0 / cosine, 0.0])
+            held = np.zeros(2)
         elif isinstance(of, RollerBearing) and of.rib_stiffness is not None:
             rows = np.column_stack([rows, np.full(2, of.pushed_along)])
-            pulled, held = np.array([1.0, of.flung_along]), np.array([0.0, of.rib_stiffness])
+            pulled = np.array([1.0, of.flung_along])
+            held = np.array([0.0, of.rib_stiffness])
         pressing = -outwards * pulled * (not easing)
         rows = np.vstack([rows, SHORT * pulled[None]]) if easing else rows
         mass = of.ball_mass * np.eye(len(held))
@@ -398,7 +403,8 @@ class _Turning:
 
     def recorded(self, run: RolledMechanism, each: int, *, centrifugal: bool) -> RolledBearing:
         """What a run of balls with so many contacts each has recorded."""
-        balls, flanks = self.bearing.balls, len(self.flanks)
+        balls = self.bearing.balls
+        flanks = len(self.flanks)
         count = run.contact_force.shape[1]
         steps = range(self.total + 1 - count, self.total + 1)
 
