@@ -43,7 +43,7 @@ def starts_within(low: Array, high: Array, start: Array, count: int, residuals: 
 
     if count < 2 or not len(start):
         return [start]
-    drawn = qmc.LatinHypercube(len(start), rng=np.random.default_rng(1)).random(SCREENED * (count - 1))
+    drawn = qmc.LatinHypercube(len(start), seed=np.random.default_rng(1)).random(SCREENED * (count - 1))
     places = low + (0.02 + 0.96 * drawn) * (high - low)
     squares = [float(np.sum(np.minimum(residuals(place) ** 2, FAR**2))) for place in places]
     best = np.argsort(squares, kind="stable")[: count - 1]
