@@ -13,9 +13,7 @@ from asperity.reference import railways
 from asperity.scenes import measured, noise, schema
 from asperity.scenes.measured import measured_passage
 from asperity.schema import Values, spectra
-from asperity.spectra import (
-    a_weighting,
-)
+from asperity.spectra import a_weighting
 
 KEPT_STEP = 0.02
 """Time between levels that are kept, s, where the record is finer: a sixth of the time constant F."""
