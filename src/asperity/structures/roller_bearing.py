@@ -28,9 +28,9 @@ ROLLER_BEARINGS: dict[str, dict[str, float]] = {
 }
 """By the keywords of `RollerBearing`, m."""
 PRINTED: dict[str, str] = {
-    "NU205": "Raceways of 31.5 and 46.5 mm and a static load rating of 27 kN are usual ones that were not "
-    "checked against a copy of a catalogue; how many rollers there are, and how long they carry, is not "
-    "printed, and is chosen so that ISO 76 makes this rating of them."
+    "NU205": "An inner raceway of 31.5 mm and a static load rating of 27 kN are those of SKF NU 205 ECP, as "
+    "the tables of bd_warehouse have them; an outer raceway of 46.5 mm is usual; how many rollers there are, "
+    "and how long they carry, is not printed, and is chosen so that ISO 76 makes this rating of them."
 }
 """What of them is printed, and what is chosen."""
 CLEARANCE = 20e-6
