@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import argparse
 import csv
+import itertools
 import json
 import math
 import warnings
@@ -417,20 +418,33 @@ LINE_OFF, SLIP_OFF, SIDES_OFF = 0.25, 0.25, 0.14
 
 
 def rest_of_hit(seen: list[dict[str, Any]]) -> Iterator[list[str]]:
-    """Rows of angles and speeds: what is lost at 8 degrees is lost at all, down to half of the fault."""
-    for rig, part in (("mfs", "outer"), ("mfs", "inner"), ("own", "outer")):
-        lost = float(
-            np.mean([r["lost"] for r in seen if (r["rig"], r["on"], r["angle"]) == (rig, part, 8.0)])
-        )
-        for angle, speeds in ((5.0, SPEEDS), (2.0, SPEEDS[1:2]), (8.0, SPEEDS[1:2])):
-            for speed in speeds:
-                whole = crossing(part, angle, speed)["whole"]
-                length = math.radians(angle) * HIT.raceway_radii[RINGS.index(part)]
-                time, off = 1e3 * whole * max(1.0 - lost / length, 0.5), ANGLE_OFF[angle]
-                yield [
-                    f"{rig}, {part} {angle:g}°, {speed:g} 1/min", f"{1e3 * whole:.3f}", f"{time:.3f}",
-                    f"{time * (1 - off):.3f}–{time * (1 + off):.3f}",
-                ]  # fmt: skip
+    """Rows of the angles and speeds that are not there: what is lost at 8 degrees is lost at all."""
+    known = {(r["rig"], r["on"], r["angle"], r["speed"]) for r in seen}
+    for (rig, part), angle in itertools.product(RIGS, (5.0, 2.0, 8.0)):
+        lost = lost_on(seen, rig, part)
+        for speed in SPEEDS:
+            if (rig, part, angle, speed) in known:
+                continue
+            whole = crossing(part, angle, speed)["whole"]
+            length = math.radians(angle) * HIT.raceway_radii[RINGS.index(part)]
+            time, off = 1e3 * whole * max(1.0 - lost / length, 0.5), ANGLE_OFF[angle]
+            yield [
+                f"{rig}, {part} {angle:g}°, {speed:g} 1/min", f"{1e3 * whole:.3f}", f"{time:.3f}",
+                f"{time * (1 - off):.3f}–{time * (1 + off):.3f}",
+            ]  # fmt: skip
+
+
+RIGS = ("mfs", "outer"), ("mfs", "inner"), ("own", "outer"), ("own", "inner")
+
+
+def lost_on(seen: list[dict[str, Any]], rig: str, part: str) -> float:
+    """What a ball loses on a rig and raceway, m, by its faults of 8 degrees; else by those of the other one.
+
+    It goes as the square root of the relative radius (`let_go`).
+    """
+    on = part if any((r["rig"], r["on"]) == (rig, part) for r in seen) else RINGS[1 - RINGS.index(part)]
+    own = np.mean([r["lost"] for r in seen if (r["rig"], r["on"], r["angle"]) == (rig, on, 8.0)])
+    return float(own) * math.sqrt(relative_radius(part) / relative_radius(on))
 
 
 ANGLE_OFF = {2.0: 0.25, 5.0: 0.08, 8.0: 0.04}

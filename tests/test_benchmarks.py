@@ -173,6 +173,26 @@ def test_what_is_computed_anew_stands_beside_the_same_run_of_what_was_stated():
             list(bearings.beside_rows(stated, other))
 
 
+def test_every_angle_and_speed_that_is_not_there_is_told_of_each_rig_and_raceway():
+    """A raceway without a record loses as the other one, by the square roots of R = 1/(1/r_b ± 1/R)."""
+    ball, (inner, outer) = 0.5 * bearings.HIT.ball_diameter, bearings.HIT.raceway_radii
+    there = [("mfs", "outer", 1e-4), ("mfs", "inner", 2e-4), ("own", "outer", 4e-4)]
+    seen = [
+        {"rig": rig, "on": part, "angle": angle, "speed": 1200.0, "lost": lost}
+        for rig, part, lost in there
+        for angle in (2.0, 8.0)
+    ]
+    rows = {row[0]: row[1:] for row in bearings.rest_of_hit(seen)}
+    assert len(rows) == 4 * 9 - len(seen)
+    assert not {"mfs, outer 8°, 1200 1/min", "own, outer 2°, 1200 1/min"} & set(rows)
+    relative = np.sqrt((1.0 / ball - 1.0 / outer) / (1.0 / ball + 1.0 / inner))
+    for rig, part, lost, radius in ((*there[0], outer), ("own", "inner", 4e-4 * relative, inner)):
+        whole, told, _ = rows[f"{rig}, {part} 5°, 900 1/min"]
+        share = 1.0 - lost / (np.radians(5.0) * radius)
+        assert float(told) == pytest.approx(share * float(whole), abs=2e-3)
+    assert rows["own, inner 2°, 600 1/min"][:2] == ["0.923", "0.462"]  # bridged: at half of it
+
+
 def test_seats_that_move_by_half_have_four_times_the_modal_mass():
     """Of a force on both alike and of one against the other; sleepers as a whole, and their turn, stay."""
     even, heavier = railway.sleepers(0.03), railway.sleepers(0.03, 4.0)
