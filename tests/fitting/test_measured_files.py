@@ -112,6 +112,29 @@ def test_each_rail_of_a_table_is_a_repeat(track, tmp_path):
         assert found.uncertainty is not None
 
 
+@pytest.mark.parametrize("units", [" Hz", ""])
+def test_a_direction_may_stand_before_its_line_and_bands_without_a_unit(track, tmp_path, units):
+    """As tables of EN 15461 often are: no column is called direction, centres are numbers alone."""
+    path = tmp_path / "decay_rates.csv"
+    for begin in ("f in Hz", ""):
+        bands = "".join(f";{each}{units}" for each in ("800", "1000", "1250", "1600"))
+        path.write_text(f"EN 15461, dB/m\n{begin}{bands}\nVertical;4;3;2;1,5\nlateral;1;0,8;0,6;0,5\n")
+        vertical, lateral = measured_for(track, path, {}, None)
+        assert (vertical.what, lateral.what) == ("vertical decay rate", "lateral decay rate")
+        assert vertical.at == pytest.approx(10.0 ** np.array([2.9, 3.0, 3.1, 3.2]))
+        assert (vertical.values[-1], lateral.values[1], vertical.records) == (1.5, 0.8, 1)
+
+
+@pytest.mark.parametrize(
+    "bands", ["800;1000;1600;2000", "800;1000;1200;1600", "1600;1250;1000;800", "-1;0;1;2"]
+)
+def test_numbers_that_are_no_bands_one_after_the_other_head_no_table(track, tmp_path, bands):
+    path = tmp_path / "decay_rates.csv"
+    path.write_text(f"rail;{bands}\nleft;4;3;2;1\n")
+    with pytest.raises(InputError, match=r"the columns frequency \(Hz\), vertical decay rate"):
+        measured_for(track, path, {}, None)
+
+
 def test_a_line_is_a_frequency(track, file):
     both = "frequency (Hz), vertical (dB/m), lateral (dB/m)\n100, 5, 7\n125, 6, 8\n160, 6, 9\n"
     found = measured_for(track, file(both, "track.csv"), {}, None)

@@ -72,15 +72,37 @@ def _recognised(path: Path, heading: str, what: str | None, known: Sequence[Obse
 
 
 def _axis_in(cells: Sequence[str]) -> dict[int, float] | None:
-    """Columns of a heading that are frequencies, Hz, by their numbers; None where they are too few."""
+    """Columns of a heading that are frequencies, Hz, by their numbers; None where they are too few.
+
+    With their unit, or as bare numbers in which one third-octave follows the other.
+    """
     found = {}
+    bare = {}
     for number, cell in enumerate(cells):
-        if unit_in(cell):
-            try:
+        try:
+            if unit_in(cell):
                 found[number] = quantity(cell.replace(",", "."), "Hz")
-            except InputError:
-                continue
-    return found if len(found) > WIDE else None
+            else:
+                bare[number] = number_in(cell)
+        except (InputError, ValueError):
+            continue
+    if len(found) > WIDE:
+        return found
+    return bare if len(bare) > WIDE and _follow(np.array(list(bare.values()))) else None
+
+
+def _follow(values: Array) -> bool:
+    """Whether values (n,) are centres of one-third octaves that follow one another, Hz."""
+    if values.min() <= 0.0:
+        return False
+    numbers, off = _numbered(values)
+    return bool((np.diff(numbers) == 1.0).all() and not off.any())
+
+
+def _numbered(at: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """Numbers of the one-third octaves nearest to frequencies (n,), Hz, and which are centres of none."""
+    numbers = np.rint(10.0 * np.log10(at))
+    return numbers, np.abs(10.0 * np.log10(at) - numbers) > 0.06
 
 
 def _wide(
@@ -174,7 +196,7 @@ def _record(
     centres = _centres(path, at)
     every = {title: _cell(row, number) for number, title in labels.items()}
     told = {title: cell for title, cell in every.items() if cell}
-    direction = next((each for title, each in told.items() if _plain(title) == _DIRECTION), "")
+    direction = _direction_in(told)
     if of.name in DIRECTIONS.values() and direction:
         of = observable(DIRECTIONS[one_of(f"direction in {path.name}", direction.lower(), DIRECTIONS)])
     if of.decade and (held <= 0.0).any():
@@ -185,10 +207,16 @@ def _record(
     return Measured(of.name, centres, held, conditions=conditions, source=path.name, labels=said)
 
 
+def _direction_in(told: Mapping[str, str]) -> str:
+    """The word of the column that is called so, else one that says it in any; empty without one."""
+    named = [each for title, each in told.items() if _plain(title) == _DIRECTION]
+    said = [each for each in told.values() if each.lower() in DIRECTIONS]
+    return next(iter([*named, *said]), "")
+
+
 def _centres(path: Path, at: Array) -> Array:
     """Exact centres of one-third octaves by nominal ones, Hz."""
-    numbers = np.rint(10.0 * np.log10(at))
-    off = np.abs(10.0 * np.log10(at) - numbers) > 0.06
+    numbers, off = _numbered(at)
     if off.any() or (np.diff(numbers) == 0).any():
         wrong = at[off][0] if off.any() else at[0]
         raise InputError(path.name, f"a column of {wrong:g} Hz", "centres of one-third octaves, each once")
