@@ -199,12 +199,12 @@ def test_a_case_is_read_from_its_file_whatever_its_editor_puts_before_it(source)
 
 @pytest.mark.parametrize(("kind", "plain", "differing"), [
     ("ball-on-beam",
-     BallOnBeam(duration=0.12, settling=0.05, surface={"rms": 1e-7}, ball={"load": 50.0}),
+     BallOnBeam(duration=0.12, settling=0.3, surface={"rms": 1e-7}, ball={"load": 50.0}),
      ["duration", "settling", "surface.rms", "ball.load"]),
     ("wheel-on-rail", parse_case(case_text("wheel-on-rail", '[wheel] roughness = "disc"')),
      ["surface.spectrum", "wheel.roughness"]),
-    ("bodies", Bodies(duration=0.12, surface={"rms": "0.1 um"}, body={"load": 50}),
-     ["duration", "surface.rms", "body.load"]),
+    ("bodies", Bodies(duration=0.12, settling=0.3, surface={"rms": "0.1 um"}, body={"load": 50}),
+     ["duration", "settling", "surface.rms", "body.load"]),
 ])  # fmt: skip
 def test_the_template_is_a_case_with_the_defaults_and_explains_each_key(kind, plain, differing):
     case, comments = parse_case(template(kind)), {}

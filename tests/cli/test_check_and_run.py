@@ -144,7 +144,7 @@ def test_the_demonstration_says_where_its_report_lies():
 def test_a_check_shows_values_and_work():
     shown = words_of(call("check", "case.toml", "--keys").stdout)
     for text in (
-        "case.toml: a valid case, 1 doubt:",
+        "case.toml: a valid case, 2 doubts:",
         "ball.radius 25 mm",
         "6001 points 10 µm apart",
         "0.01 s, and 0.05 s before it, 6000 steps of 10 µs",

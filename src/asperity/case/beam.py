@@ -177,7 +177,7 @@ class BallOnBeam(Case):
     DISPLACEMENTS = ("beam_displacement", "ball_displacement")
     WRITTEN_OUT: ClassVar = {
         "duration": '"0.12 s"',
-        "settling": '"50 ms"',
+        "settling": '"0.3 s"',
         "surface.rms": '"0.1 um"',
         "ball.load": '"50 N"',
     }

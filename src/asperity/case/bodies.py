@@ -90,7 +90,12 @@ class Bodies(OverTrack):
 
     TITLE = "Bodies roll over a structure."
     ROLLING = "body"
-    WRITTEN_OUT: ClassVar = {"duration": '"0.12 s"', "surface.rms": '"0.1 um"', "body.load": '"50 N"'}
+    WRITTEN_OUT: ClassVar = {
+        "duration": '"0.12 s"',
+        "settling": '"0.3 s"',
+        "surface.rms": '"0.1 um"',
+        "body.load": '"50 N"',
+    }
 
     kind: str = key(Choice(("bodies",)), "bodies", "what rolls")
     over: str = key(

@@ -12,8 +12,8 @@ from asperity.errors import CaseError, InputError, OutOfRangeWarning
 from asperity.reduction.filter import FEWEST_POSITIONS
 from asperity.scenarios import reducing
 from asperity.scenarios.scene import PreparedCase
-from asperity.scenarios.textures import recorded_time
-from asperity.spectra import HALF_BAND, lowest_band, nominal_frequency, root_mean_square
+from asperity.scenarios.textures import lowest_recorded, recorded_time
+from asperity.spectra import HALF_BAND, nominal_frequency, root_mean_square
 from asperity.structures.moving_kernel import refuse_kernel
 from asperity.structures.track import Track
 from asperity.units import written
@@ -73,8 +73,7 @@ def _problems_of_record(prepared: PreparedCase) -> Iterator[InputError]:
     case = prepared.case
     recorded = recorded_time(case, prepared.textures)
     highest = case.numerics.highest_frequency
-    samples = math.floor(recorded / case.time_step * (1.0 + 1e-12)) + 1
-    lowest = lowest_band(samples, case.time_step)
+    lowest = lowest_recorded(case, recorded)
     if highest * HALF_BAND < lowest:
         received = f"{rounded(highest, 4)} Hz with a record of {recorded:.4g} s"
         allowed = (

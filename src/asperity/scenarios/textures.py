@@ -17,6 +17,7 @@ from asperity.laws import spec_of
 from asperity.scenarios import records
 from asperity.scenarios.geometry import Geometry, cells_over, window_cells
 from asperity.scenarios.records import Grid, Record
+from asperity.spectra import lowest_band
 from asperity.speeds import SpeedCourse
 from asperity.surfaces import levelling, measured_lines, statistics, synthesis
 from asperity.surfaces.cell_means import PressedStrip, pressed_heights
@@ -243,6 +244,12 @@ def recorded_time(case: Case, textures: Textures) -> float:
     pace = case.contact.spacing / case.speed
     ahead = max(case.rolling.offsets) / case.speed
     return min(case.rolled_time, cells * pace - ahead)
+
+
+def lowest_recorded(case: Case, record: float) -> float:
+    """Centre of the lowest one-third octave of a record that is this long, s, in Hz."""
+    samples = math.floor(record / case.time_step * (1.0 + 1e-12)) + 1
+    return lowest_band(samples, case.time_step)
 
 
 def warn_of_textures(case: Case, shape: Geometry, textures: Textures) -> None:

@@ -7,9 +7,9 @@ import numpy as np
 from asperity import laws
 from asperity import spectra as bands
 from asperity.arguments import Array
-from asperity.scenarios.scene import force_transfer
 from asperity.scenes import schema
 from asperity.scenes.compute import Computed
+from asperity.scenes.start_of_record import chance_along
 from asperity.scenes.validity import difference_to
 from asperity.schema import Values, spectra
 
@@ -50,10 +50,6 @@ def spectra_group(computed: Computed) -> Values:
     return laid_out
 
 
-PLACES = 8
-"""Places along the record at which the linear contact is looked at."""
-
-
 def held_values(computed: Computed) -> tuple[Array, Array, Array]:
     """B T of the bands (b,), the share of their level that the start makes, and the independent values held.
 
@@ -65,11 +61,10 @@ def held_values(computed: Computed) -> tuple[Array, Array, Array]:
     time = bands.averaging_time(len(run.time), case.time_step, segment=computed.segment)
     seen = bands.values_seen(run.contact_force[0], case.time_step, band)
     record = float(run.time[-1])
-    begin, end = run.positions[0, [0, -1]]
-    places = begin + (end - begin) * (np.arange(PLACES) + 0.5) / PLACES
-    of = (computed.scene.first, computed.scene, computed.stiffness, places)
     product = bands.band_product(band, time)
-    held, start = bands.chance_and_start(lambda f: force_transfer(f, *of), band, case.settled_time, record)
+    ends = run.positions[0, [0, -1]]
+    of = (computed.scene, computed.stiffness, ends, band)
+    held, start = chance_along(*of, case.settled_time, record)
     return product, start, np.minimum(product * seen, held * time / record)
 
 

@@ -7,6 +7,7 @@ from asperity.scenarios.preparing import Plan, ScanSize, Work, expect
 from asperity.scenarios.reducing import STATES
 from asperity.scenarios.scene import PreparedCase
 from asperity.scenes.roundness import planned_roundness
+from asperity.scenes.start_of_record import start_foreseen
 from asperity.scenes.track import planned_track
 from asperity.scenes.validity import foreseen
 from asperity.store import Store
@@ -18,6 +19,7 @@ def planned_scene(prepared: PreparedCase, progress: Progress) -> Plan:
     work = expect(prepared, progress)
     choice = law_choice(prepared)
     faults = [] if work.tried is None else foreseen(prepared, work.tried, choice)
+    faults += start_foreseen(prepared)
     return Plan(plan(prepared, work, choice), work, faults)
 
 

@@ -18,8 +18,9 @@ from asperity.scenarios.preparing import ContactTrial
 from asperity.scenarios.reducing import PressedSamples
 from asperity.scenarios.scene import PreparedCase
 from asperity.scenes.compute import Computed
+from asperity.scenes.start_of_record import low_levels
 from asperity.schema import Entry, spectra
-from asperity.spectra import MOST_START, nominal_frequency, say_little
+from asperity.spectra import nominal_frequency, say_little
 from asperity.written_numbers import in_newtons, rounded
 
 AREA = (0.9, 0.7)
@@ -391,12 +392,10 @@ def _start_of_record(over_frequency: xarray.Dataset) -> Iterator[str]:
     """Say in which bands resonances have not built up yet, so that levels of the force are low."""
     if (start := over_frequency.get(spectra.START_SHARE.name)) is None:
         return
-    low = -10.0 * np.log10(1.0 - start)
-    if (much := start > MOST_START).any():
-        where = ", ".join(nominal_frequency(float(band)) for band in over_frequency[spectra.BAND.name][much])
-        size = f"{float(low.max()):.1f} dB"
+    if (told := low_levels(over_frequency[spectra.BAND.name].values, start.values)) is not None:
+        where, low = told
         held = "resonances there have not built up when the record starts"
-        yield f"Levels at {where} are up to {size} low: {held}; a longer settling helps"
+        yield f"Levels at {where} are {low}: {held}; a longer settling helps"
 
 
 def _doubts(computed: Computed, found: Sequence[Finding]) -> Iterator[str]:
