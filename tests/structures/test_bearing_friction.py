@@ -17,9 +17,9 @@ from asperity.contact.hertz import Hertz
 from asperity.errors import InputError
 from asperity.reference.materials import Material
 from asperity.structures import bearing_friction
-from asperity.structures.ball_bearing import Kinematics
 from asperity.structures.bearing_creepage import creepage_of
 from asperity.structures.bearing_friction import BallOnRaceway, friction_of_balls, rolling_speed, torque_of
+from asperity.structures.rolling_bearing import Kinematics
 
 STEEL = material("steel")
 B6205 = BallBearing.named("6205")

@@ -43,8 +43,9 @@ from asperity.parameters import (
 )
 from asperity.rolling.resolution import PER_MODE
 from asperity.speeds import FEWEST_TURNS, SpeedCourse, covered, reached
-from asperity.structures.ball_bearing import PARTS, BallBearing, Kinematics
+from asperity.structures.ball_bearing import BallBearing
 from asperity.structures.modal import HIGHEST
+from asperity.structures.rolling_bearing import PARTS, Kinematics
 from asperity.units import written
 from asperity.written_numbers import in_newtons, rounded
 

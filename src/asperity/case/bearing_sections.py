@@ -25,7 +25,8 @@ from asperity.parameters import (
     optional,
 )
 from asperity.reference.bearings import LISTED, LISTING, named_bearings
-from asperity.structures.ball_bearing import PARTS, BallBearing
+from asperity.structures.ball_bearing import BallBearing
+from asperity.structures.rolling_bearing import PARTS
 from asperity.surfaces.faults import Fault
 from asperity.surfaces.raceway import AroundTexture, closed_trace
 

@@ -21,11 +21,11 @@ from asperity.reporting.figure import write_chart
 from asperity.scenes.bearing_at_rest import static_group
 from asperity.scenes.figures.bearing import ball_contacts_table, load_zone
 from asperity.schema import tree
-from asperity.structures.ball_bearing import PARTS, Kinematics
 from asperity.structures.bearing_creepage import flank_spin
 from asperity.structures.bearing_statics import LoadedBearing, doubt_speed
 from asperity.structures.roller_bearing import PRINTED, ROLLER_BEARINGS, AnyBearing, RollerBearing
 from asperity.structures.roller_statics import LoadedRollers
+from asperity.structures.rolling_bearing import PARTS, Kinematics
 from asperity.terminal import say, say_table
 from asperity.written_numbers import rounded
 

@@ -15,7 +15,7 @@ from asperity.case.tables import TableSource, read_table
 from asperity.diagnostics import ISO_BANDS
 from asperity.observables.observable import Collected, Measured, Observable, Predictable, Values, reader
 from asperity.schema import bearing
-from asperity.structures.ball_bearing import PARTS
+from asperity.structures.rolling_bearing import PARTS
 
 TONE = "bearing tone"
 VELOCITY = "bearing band velocity"

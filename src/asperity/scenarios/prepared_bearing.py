@@ -22,9 +22,9 @@ from asperity.scenarios.raceway_limits import doubt_fault, doubt_rise, doubt_sur
 from asperity.scenarios.roller_raceways import on_surface, surface_on
 from asperity.speeds import at_fastest, slowest
 from asperity.store import Store
-from asperity.structures.ball_bearing import PARTS
 from asperity.structures.bearing_statics import doubt_speed
 from asperity.structures.roller_bearing import AnyBearing
+from asperity.structures.rolling_bearing import PARTS
 from asperity.surfaces.raceway import Raceway
 from asperity.written_numbers import in_newtons, rounded
 

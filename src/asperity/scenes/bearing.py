@@ -32,7 +32,7 @@ from asperity.scenes.records import recorded_group
 from asperity.scenes.result import root_attributes, scenario_group
 from asperity.schema import Values, bearing, contact, tree
 from asperity.speeds import at_fastest, speed_at
-from asperity.structures.ball_bearing import PARTS
+from asperity.structures.rolling_bearing import PARTS
 from asperity.written_numbers import rounded
 
 SOURCES = (

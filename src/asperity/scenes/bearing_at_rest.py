@@ -7,8 +7,8 @@ from asperity.scenarios.prepared_bearing import RINGS, omitted_from
 from asperity.scenes.computed_bearing import ComputedBearing
 from asperity.scenes.observer import Observer
 from asperity.schema import Values, bearing
-from asperity.structures.ball_bearing import PARTS, Kinematics
 from asperity.structures.bearing_statics import LoadedBearing
+from asperity.structures.rolling_bearing import PARTS, Kinematics
 
 DIRECTIONS = ("along", "across", "axial")
 

@@ -14,7 +14,7 @@ from asperity.rolling.bearing import RolledBearing
 from asperity.scenes.observer import Observer
 from asperity.schema import Values, bearing, spectra
 from asperity.speeds import SpeedCourse
-from asperity.structures.ball_bearing import PARTS
+from asperity.structures.rolling_bearing import PARTS
 
 HARMONICS = 5
 REACH = 1.2

@@ -18,8 +18,9 @@ from asperity.reporting.tables import ReportTable, number_cells, table, text_cel
 from asperity.scenes.bearing_at_rest import static_group
 from asperity.scenes.figures.bearing import ball_contacts_table, bands_table
 from asperity.schema import tree
-from asperity.structures.ball_bearing import PARTS, BallBearing
+from asperity.structures.ball_bearing import BallBearing
 from asperity.structures.roller_bearing import PRINTED, RollerBearing
+from asperity.structures.rolling_bearing import PARTS
 from asperity.written_numbers import rounded
 
 if TYPE_CHECKING:

@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
-from asperity.arguments import ArrayLike, not_negative, one_of, real, require, whole
+from asperity.arguments import ArrayLike, real, require
 from asperity.contact.gothic_arch import GothicArch
 from asperity.contact.hertz import Hertz, in_groove
-from asperity.diagnostics.hypotheses import Tone
 from asperity.parameters import Choice, MaterialOrName, Number, Quantity, checked_parameters, parameter
 from asperity.reference.bearings import LISTED, listed_bearing
-from asperity.reference.materials import MATERIALS, Material, contact_modulus
+from asperity.reference.materials import Material, contact_modulus
+from asperity.structures.rolling_bearing import GAP, HARD, HARDNESS, PRESSURE, STEEL, RollingBearing
 from asperity.written_numbers import rounded
 
 if TYPE_CHECKING:
+    from asperity.diagnostics import Tone
     from asperity.structures.bearing_statics import LoadedBearing
 
 BEARINGS: dict[str, dict[str, Any]] = {name: each.dimensions for name, each in LISTED.items()}
@@ -29,27 +30,15 @@ STATIC_PRESSURE = 4.2e9
 """Peak pressure, Pa, from which on a dent of about 1/10 000 of the ball's diameter remains (ISO 76:2006)."""
 FATIGUE_PRESSURE = 1.5e9
 """Peak pressure, Pa, of the fatigue load limit, below which bearing steel lasts (ISO 281:2007)."""
-HARDNESS = 7.0e9
-"""Of hardened rings, Pa: about 700 HV, chosen here."""
-SLIP = 0.01
-"""Share by which the cage of a bearing that is loaded lags at most."""
-FASTEST = 1e6
-"""Speed times pitch diameter, mm/min, beyond which only spindles, turbines and pumps of their own kind run:
-bearings that are listed for general use run slower."""
-PARTS = ("outer", "inner", "ball")
-"""What can be wavy or faulty."""
-STEEL = MATERIALS["steel"]
 _CONFORMITY = Number(above=0.5, at_most=1.0)
 _USUAL = "0.505 to 0.7: grooves lie between"
-_GAP, _LOADS = "-1 mm to 10 mm: bearings lie between", "0 N to 100 MN: bearings carry less"
+_LOADS = "0 N to 100 MN: bearings carry less"
 _ANGLE = Quantity("rad", at_least=0)
 _ANGLES = "0 deg to 80 deg: balls touch both grooves between"
-_PRESSURE = Quantity("Pa", above=0)
-_HARD = "1 MPa to 100 GPa: no solid is as soft, or as hard"
 
 
 @dataclass(frozen=True)
-class BallBearing:
+class BallBearing(RollingBearing):
     """Ball bearing of one row: equal balls between two rigid grooved rings, held apart by a cage.
 
     Parameters
@@ -102,8 +91,7 @@ class BallBearing:
     '68 N, 1.06 GPa'
     """
 
-    ELEMENT: ClassVar = "ball"
-    """What rolls in it."""
+    ELEMENT = "ball"
     LEFT_OUT: ClassVar = (
         "There is no film of lubricant, no friction in the motion, no shoulder of a groove, and no tilt of a "
         "ring; the contact angle is that of the static load."
@@ -136,7 +124,7 @@ class BallBearing:
         _CONFORMITY, 0.52, "groove radius of the outer ring over ball diameter", _USUAL, default=CONFORMITY
     )
     clearance: float | None = parameter(
-        Quantity("m"), "10 um", "diametral clearance; below zero the balls are pressed", _GAP, default=None
+        Quantity("m"), "10 um", "diametral clearance; below zero the balls are pressed", GAP, default=None
     )
     contact_angle: float | None = parameter(
         _ANGLE, "15 deg", "free contact angle, instead of the clearance", _ANGLES, default=None
@@ -152,7 +140,7 @@ class BallBearing:
     preload: float = parameter(
         Quantity("N", at_least=0), "0 N", "constant axial force, as of a spring", _LOADS, default=0.0
     )
-    hardness: float = parameter(_PRESSURE, "7 GPa", "hardness of the rings", _HARD, default=HARDNESS)
+    hardness: float = parameter(PRESSURE, "7 GPa", "hardness of the rings", HARD, default=HARDNESS)
     material: Material = parameter(  # noqa: RUF009
         MaterialOrName(), "steel", "material of the rings", default=STEEL
     )
@@ -165,11 +153,7 @@ class BallBearing:
 
     def __post_init__(self) -> None:
         checked_parameters(self)
-        D, d_m = self.ball_diameter, self.pitch_diameter
-        room = d_m * math.sin(math.pi / self.balls)  # between the centres of neighbours
-        received = f"{self.balls} of {D * 1e3:.4g} mm on a pitch diameter of {d_m * 1e3:.4g} mm"
-        allowed = f"balls that fit side by side: at most {room * 1e3:.4g} mm"
-        require(room >= D, "balls", received, allowed, "Take fewer or smaller balls.")
+        self.check_room()
         for other in ("clearance", "arch_angle"):
             both = getattr(self, other) is not None and self.contact_angle is not None
             require(not both, "bearing", f"both {other} and contact_angle", "one of them", "Remove one.")
@@ -224,10 +208,6 @@ class BallBearing:
             dimensions["clearance"] = CLEARANCE
         return cls(**(dimensions | others))
 
-    def with_(self, **others: Any) -> BallBearing:
-        """The same bearing with other values for some parameters, in SI."""
-        return replace(self, **others)
-
     @property
     def groove_distance(self) -> float:
         """Distance of the centres of both grooves where the ball touches both, A = r_i + r_o − D, m."""
@@ -241,7 +221,7 @@ class BallBearing:
         return 0.0 if self.clearance is None else self.clearance
 
     @property
-    def free_angle(self) -> float:
+    def free_angle(self) -> float:  # type: ignore[override]
         """Contact angle without load, rad: cos α = 1 − P_d/2A, zero of one without clearance.
 
         Of arches cos α = cos α_g − P_d/2A, with that of the flanks, α_g: of a ball that an axial load presses
@@ -274,12 +254,6 @@ class BallBearing:
         along = distance * math.sin(self.arch_angle or 0.0)
         return distance - self.centres_apart * math.cos(contact_angle) - along * math.sin(contact_angle)
 
-    @property
-    def raceway_radii(self) -> tuple[float, float]:
-        """Radii of inner and outer raceway where a ball touches at the free angle, (d_m ∓ D cos α)/2, m."""
-        half = 0.5 * self.ball_diameter * math.cos(self.free_angle)
-        return 0.5 * self.pitch_diameter - half, 0.5 * self.pitch_diameter + half
-
     @cached_property
     def inner_contact(self) -> Hertz:
         """Contact of a ball and the inner ring."""
@@ -307,50 +281,9 @@ class BallBearing:
         return float(self.series_stiffness * overlap**1.5)
 
     @property
-    def fastest(self) -> float:
-        """Speed, turns per second, beyond which hardly any bearing of this size runs (`FASTEST`), Hz."""
-        return FASTEST / (60.0 * 1e3 * self.pitch_diameter)
-
-    @property
-    def ball_mass(self) -> float:
+    def ball_mass(self) -> float:  # type: ignore[override]
         """Mass of a ball, kg."""
         return math.pi / 6.0 * self.ball_diameter**3 * self.ball_material.density
-
-    def centrifugal_force(self, speed: float) -> float:
-        """Force of a ball outwards, m (d_m/2) (2π f_c)², N, at a speed, turns per second."""
-        cage = 2.0 * math.pi * self.kinematics(speed).cage
-        return 0.5 * self.ball_mass * self.pitch_diameter * cage**2
-
-    def flung_outwards(self, contact_angle: float) -> float:
-        """Share of centrifugal force by which the outer contact carries more than the inner one."""
-        return math.cos(contact_angle)
-
-    def flung_axially(self, lift: float) -> float:
-        """Axial force of what balls are thrown on the inner ring, N: they lie on no rib."""
-        return 0.0
-
-    def kinematics(
-        self, speed: float, *, contact_angle: float | None = None, slip: float = 0.0
-    ) -> Kinematics:
-        """How fast everything turns where balls roll without sliding, but for a slip of the cage.
-
-        Parameters
-        ----------
-        speed : float
-            Of the ring that turns, turns per second.
-        contact_angle : float, optional
-            At which balls touch while they run, rad; the free one by default.
-        slip : float
-            Share by which the cage is slower than in pure rolling.
-
-        Returns
-        -------
-        Kinematics
-            Frequencies, Hz.
-        """
-        angle = self.free_angle if contact_angle is None else contact_angle
-        diameters = self.ball_diameter, self.pitch_diameter
-        return Kinematics.rolling(self.balls, diameters, angle, self.turning, speed=speed, slip=slip)
 
     def tones(self, axial: bool = False) -> dict[str, Tone]:
         """Tones of faults of its parts per turn, and how far contact angle and slip may move them.
@@ -372,7 +305,7 @@ class BallBearing:
         angle = self.free_angle if pressed else (self.arch_angle or 0.0)
         least = max(angle - math.radians(10.0), 0.0)
         most = max(self.free_angle + math.radians(5.0), math.radians(15.0))
-        return tones_between(self, angle, least, most)
+        return self.tones_between(angle, least, most)
 
     def loaded(
         self,
@@ -414,172 +347,3 @@ class BallBearing:
         from asperity.structures.bearing_statics import load_distribution
 
         return load_distribution(self, radial, axial, speed, cage_angles)
-
-
-def tones_between(bearing: Any, angle: float, least: float, most: float) -> dict[str, Tone]:
-    """Tones of the parts of a bearing per turn at a contact angle, and their limits for a cage that lags.
-
-    Parameters
-    ----------
-    bearing : BallBearing or RollerBearing
-        The bearing.
-    angle, least, most : float
-        Contact angle, and its limits, rad.
-
-    Returns
-    -------
-    dict
-        `asperity.diagnostics.Tone` of ``"outer"``, ``"inner"`` and ``"ball"``.
-    """
-    limits = [
-        bearing.kinematics(1.0, contact_angle=each, slip=slip)
-        for each in (least, angle, most)
-        for slip in (0.0, SLIP)
-    ]
-    found = {}
-    for part, (order, modulation) in bearing.kinematics(1.0, contact_angle=angle).families.items():
-        tones = [each.tone(part) for each in limits]
-        slower = 1.0 - SLIP if part == "ball" else 1.0  # its spin follows that of the cage
-        unlike = 2 if part == "ball" else 1  # a spot of it meets both rings in turn
-        found[part] = Tone(order, modulation, min(tones) * slower, max(tones), unlike)
-    return found
-
-
-@dataclass(frozen=True)
-class Kinematics:
-    """Frequencies of a bearing that turns, Hz.
-
-    Parameters
-    ----------
-    balls : int
-        Z.
-    inner, outer : float
-        Turns of each ring.
-    cage : float
-        Turns of the cage.
-    spin : float
-        Turns of a ball about its own axis, as seen from the cage.
-    """
-
-    balls: int
-    inner: float
-    outer: float
-    cage: float
-    spin: float
-
-    @classmethod
-    def rolling(
-        cls,
-        balls: int,
-        diameters: tuple[float, float],
-        angle: float,
-        turning: str,
-        *,
-        speed: float,
-        slip: float = 0.0,
-    ) -> Kinematics:
-        """Frequencies of rolling without sliding, but for a slip of the cage.
-
-        Parameters
-        ----------
-        balls : int
-            Z: balls, or rollers.
-        diameters : (float, float)
-            Of a ball or roller, and of the circle of their centres, m.
-        angle : float
-            Of the contacts, rad.
-        turning : {"inner", "outer"}
-            The ring that turns.
-        speed : float
-            Of that ring, Hz.
-        slip : float
-            Share by which the cage is slower than in pure rolling.
-
-        Returns
-        -------
-        Kinematics
-        """
-        speed = not_negative("speed (1/s)", speed)
-        real("slip", slip, "0 or more, below 1", at_least=0.0, below=1.0)
-        diameter, pitch = diameters
-        gamma = diameter / pitch * math.cos(angle)
-        inner, outer = (speed, 0.0) if turning == "inner" else (0.0, speed)
-        cage = 0.5 * (inner * (1.0 - gamma) + outer * (1.0 + gamma)) * (1.0 - slip)
-        spin = 0.5 * speed * pitch / diameter * (1.0 - gamma**2)
-        return cls(balls, inner, outer, cage, spin)
-
-    def passing_speeds(self, raceway_radii: tuple[float, float]) -> tuple[float, float]:
-        """Speeds with which contacts move along the inner and the outer raceway, of such radii, m; m/s."""
-        inner, outer = raceway_radii
-        along_inner = 2.0 * math.pi * inner * abs(self.cage - self.inner)
-        along_outer = 2.0 * math.pi * outer * abs(self.cage - self.outer)
-        return along_inner, along_outer
-
-    @property
-    def turning(self) -> float:
-        """Turns of the ring that turns."""
-        return max(self.inner, self.outer)
-
-    @property
-    def ball_pass_outer(self) -> float:
-        """Balls that pass a spot of the outer raceway (BPFO)."""
-        return self.balls * abs(self.cage - self.outer)
-
-    @property
-    def ball_pass_inner(self) -> float:
-        """Balls that pass a spot of the inner raceway (BPFI)."""
-        return self.balls * abs(self.inner - self.cage)
-
-    @property
-    def ball_defect(self) -> float:
-        """Meetings of a spot of a ball with either raceway (2 BSF)."""
-        return 2.0 * self.spin
-
-    def tone(self, part: str) -> float:
-        """Frequency of a fault of a part: ``"outer"``, ``"inner"`` or ``"ball"``."""
-        return self.families[one_of("part", part, PARTS)][0]
-
-    def modulation(self, part: str) -> float:
-        """Turns of a fault of a part past a load that stands still: distance of its side bands."""
-        return self.families[one_of("part", part, PARTS)][1]
-
-    @property
-    def families(self) -> dict[str, tuple[float, float]]:
-        """Tone of each part and distance of its side bands, for `asperity.diagnostics.explained_lines`."""
-        tones = self.ball_pass_outer, self.ball_pass_inner, self.ball_defect
-        return dict(zip(PARTS, zip(tones, (self.outer, self.inner, self.cage), strict=True), strict=True))
-
-    def waviness(self, part: str, order: int, lobes: int) -> tuple[float, ...]:
-        """Tones that a small waviness of a part makes in an axially loaded bearing.
-
-        Parameters
-        ----------
-        part : {"outer", "inner", "ball"}
-            What is wavy.
-        order : int
-            Waves per turn, 1 or more.
-        lobes : int
-            What moves: 0 the ring axially, 1 radially, k ≥ 2 the outer ring as it bends in k lobes.
-
-        Returns
-        -------
-        tuple of float
-            Frequencies above zero, rising, seen where nothing turns; none where the parts of all balls
-            cancel.
-
-        Notes
-        -----
-        Ball j is at ψ_j = 2π f_c t + 2πj/Z and meets cos n(ψ_j − 2π f t) of a raceway that turns with f; only
-        where n ± k = iZ do the Z contributions to cos kψ not cancel. Order 1 of a raceway that turns is its
-        eccentricity. A ball touches with opposite spots, where odd orders cancel. F. P. Wardle, Proc. IMechE
-        202 C (1988) 305.
-        """
-        order = whole("order", order, "a whole number, 1 or more", at_least=1)
-        lobes = whole("lobes", lobes, "a whole number, 0 or more", at_least=0)
-        if one_of("part", part, PARTS) == "ball":
-            found = {abs(order * self.spin + sign * lobes * self.cage) for sign in (-1, 1)}
-            return tuple(sorted(found)) if order % 2 == 0 else ()
-        passed = self.cage - self.modulation(part)
-        matching = [sign for sign in (-1, 1) if (order + sign * lobes) % self.balls == 0]
-        tones = {abs(order * passed + sign * lobes * self.cage) for sign in matching}
-        return tuple(sorted(tone for tone in tones if tone > 1e-9 * self.turning))

@@ -15,9 +15,10 @@ from asperity.contact.hertz import Hertz
 from asperity.contact.tangential import FrictionalHalfSpace
 from asperity.errors import OutOfRangeWarning
 from asperity.reference.materials import Material
-from asperity.structures.ball_bearing import BallBearing, Kinematics
+from asperity.structures.ball_bearing import BallBearing
 from asperity.structures.bearing_creepage import RINGS, BearingCreepage, Ring
 from asperity.structures.bearing_statics import LoadedBearing
+from asperity.structures.rolling_bearing import Kinematics
 
 CELLS = (24, 48)
 """Along and across a contact: heat to half a percent."""

@@ -1,17 +1,20 @@
 """How a ball bearing carries a load at rest: the energy of all contacts is least there, and convex."""
 
+from __future__ import annotations
+
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Self
 
 import numpy as np
 
 from asperity.arguments import Array, ArrayLike, finite_array, not_negative, require
 from asperity.contact.hertz import Hertz, check_half_space
 from asperity.errors import ComputationError, Grade, InputError, OutOfRangeWarning
-from asperity.structures.ball_bearing import FASTEST, FATIGUE_PRESSURE, STATIC_PRESSURE, BallBearing
+from asperity.structures.ball_bearing import FATIGUE_PRESSURE, STATIC_PRESSURE, BallBearing
 from asperity.structures.least_energy import TOLERANCE, least_energy
+from asperity.structures.rolling_bearing import FASTEST, RollingBearing
 from asperity.written_numbers import rounded
 
 LEAST = 1e-6
@@ -22,8 +25,44 @@ SPEEDS = 14
 """Halvings of the interval that holds the speed at which a ball leaves the inner ring."""
 
 
+class LoadedRow:
+    """A row of balls or rollers under a load, at m angles of its cage."""
+
+    bearing: RollingBearing
+    speed: float
+    azimuth: Array
+    inner_load: Array
+
+    @property
+    def touching(self) -> Array:
+        """How many balls or rollers touch the inner ring, at each angle of the cage (m,)."""
+        return np.asarray(np.count_nonzero(self.inner_load, axis=1), dtype=float)
+
+    @cached_property
+    def leaving_speed(self) -> float | None:
+        """Turns per second from which on some leave the inner ring, all of which are pressed at rest.
+
+        None where it stands still or is slower, or where some are not pressed at rest.
+        """
+        if self._all_touch() or self.speed == 0.0 or not self.at_speed(0.0)._all_touch():
+            return None
+        low = 0.0
+        high = self.speed
+        for _ in range(SPEEDS):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if self.at_speed(middle)._all_touch() else (low, middle)
+        return high
+
+    def at_speed(self, speed: float) -> Self:
+        """The same load at another speed, turns per second."""
+        raise NotImplementedError
+
+    def _all_touch(self) -> bool:
+        return bool(self.touching.min() == self.bearing.balls)
+
+
 @dataclass(frozen=True, eq=False)
-class LoadedBearing:
+class LoadedBearing(LoadedRow):
     """A bearing under a load at m angles of its cage, its Z balls at ψ from the radial load.
 
     Attributes
@@ -62,7 +101,7 @@ class LoadedBearing:
     imbalance: float
 
     @property
-    def inner_load(self) -> Array:
+    def inner_load(self) -> Array:  # type: ignore[override]
         """Load of the heavier contact of each ball with the inner ring (m, Z), N."""
         return self.inner_loads.max(axis=-1)
 
@@ -150,11 +189,6 @@ class LoadedBearing:
         return stiffness.sum(axis=2), (touching[..., None, None] * outer).sum(axis=2)
 
     @property
-    def touching(self) -> Array:
-        """How many balls touch the inner ring, at each angle of the cage (m,)."""
-        return np.asarray(np.count_nonzero(self.inner_load, axis=1), dtype=float)
-
-    @property
     def contact_angle(self) -> float:
         """Mean angle of both contacts, of balls that touch the inner ring weighted with that load, rad.
 
@@ -166,19 +200,9 @@ class LoadedBearing:
             angle = np.abs(angle)
         return float((angle * self.inner_loads).sum() / max(self.inner_loads.sum(), 1e-300))
 
-    @cached_property
-    def leaving_speed(self) -> float | None:
-        """Turns per second from which on balls leave the inner ring, all of which are pressed at rest.
-
-        None where it stands still or is slower, or where some ball is not pressed at rest.
-        """
-        of = self.bearing
-        angles = self.azimuth[:, 0]
-
-        def all_touch(speed: float) -> bool:
-            return bool(_solved(of, self.radial, self.axial, speed, angles).touching.min() == of.balls)
-
-        return None if self.touching.min() == of.balls else speed_of_leaving(all_touch, self.speed)
+    def at_speed(self, speed: float) -> LoadedBearing:
+        """The same load at another speed, turns per second."""
+        return _solved(self.bearing, self.radial, self.axial, speed, self.azimuth[:, 0])
 
 
 def _of_heavier(loads: Array, angles: Array) -> Array:
@@ -186,23 +210,10 @@ def _of_heavier(loads: Array, angles: Array) -> Array:
     return np.take_along_axis(angles, loads.argmax(axis=-1)[..., None], axis=-1)[..., 0]
 
 
-def speed_of_leaving(all_touch: Callable[[float], bool], fastest: float) -> float | None:
-    """Turns per second from which on not all touch that do at rest, up to one at which they do not.
-
-    None of what stands still, or where they do not at rest.
-    """
-    if fastest == 0.0 or not all_touch(0.0):
-        return None
-    low = 0.0
-    high = fastest
-    for _ in range(SPEEDS):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if all_touch(middle) else (low, middle)
-    return high
-
-
-def angles_of_cage(given: ArrayLike) -> Array:
-    """Angles of the first ball or roller (m,), rad."""
+def angles_of_cage(bearing: RollingBearing, given: ArrayLike | None) -> Array:
+    """Angles of the first ball or roller (m,), rad: by default over the passing of one."""
+    if given is None:
+        given = 2.0 * math.pi / bearing.balls * np.arange(STEPS) / STEPS
     return finite_array("angles of the cage (rad)", np.atleast_1d(np.asarray(given)), shape=(None,))
 
 
@@ -217,9 +228,7 @@ def load_distribution(
     held = radial + preloaded > 0.0 or bearing.radial_clearance < 0.0
     allowed, remedy = "a radial or axial load, or a preload", "Without one the inner ring is loose."
     require(held, "load", "none", allowed, remedy)
-    if cage_angles is None:
-        cage_angles = 2.0 * math.pi / bearing.balls * np.arange(STEPS) / STEPS
-    angles = angles_of_cage(cage_angles)
+    angles = angles_of_cage(bearing, cage_angles)
     try:
         found = _solved(bearing, radial, preloaded, speed, angles)
         _doubt(found)
@@ -356,7 +365,7 @@ def _moved(azimuth: Array) -> Array:
 
 def _solved(bearing: BallBearing, radial: float, axial: float, speed: float, angles: Array) -> LoadedBearing:
     """The inner ring in balance at each angle of the cage."""
-    azimuth = angles[:, None] + 2.0 * math.pi / bearing.balls * np.arange(bearing.balls)
+    azimuth = bearing.azimuths(angles)
     moved = _moved(azimuth)
     A = bearing.groove_distance
     load = np.array([radial, 0.0, axial])
@@ -412,21 +421,27 @@ def _doubt(found: LoadedBearing) -> None:
         )
         _doubt_flanks(found, ring)
         peak = float(found._pressure(ring).max())
-        if peak > min(STATIC_PRESSURE, of.hardness):
-            hard = peak > of.hardness
-            limit = min(STATIC_PRESSURE, of.hardness) / 1e9
-            means = "the hardness: the rings flow" if hard else "where dents begin (ISO 76)"
-            grade = Grade.OUT if hard else Grade.WARNING
-            message = (
-                f"Balls press the {ring} ring with {rounded(peak / 1e9)} GPa, above {limit:g} GPa, {means}."
-            )
-            OutOfRangeWarning.warn(f"{message} {lighter}.", grade)
+        doubt_pressure(of, ring, peak, STATIC_PRESSURE, lighter)
     if found.leaving_speed is not None:
         OutOfRangeWarning.warn(
             f"At {rounded(60.0 * found.speed, 5)} 1/min centrifugal force lifts balls off the inner ring, "
             "all of which are pressed at rest; the first one leaves at "
             f"{rounded(60.0 * found.leaving_speed, 5)} 1/min. Raise axial load or preload."
         )
+
+
+def doubt_pressure(of: RollingBearing, ring: str, peak: float, denting: float, lighter: str) -> None:
+    """Warn of a pressure, Pa, that leaves dents, or by which rings flow, and say what makes it smaller."""
+    limit = min(denting, of.hardness)
+    if peak <= limit:
+        return
+    hard = peak > of.hardness
+    means = "the hardness: the rings flow" if hard else "where dents begin (ISO 76)"
+    OutOfRangeWarning.warn(
+        f"{of.ELEMENT.capitalize()}s press the {ring} ring with {rounded(peak / 1e9)} GPa, above "
+        f"{limit / 1e9:g} GPa, {means}. {lighter}.",
+        Grade.OUT if hard else Grade.WARNING,
+    )
 
 
 def _doubt_flanks(found: LoadedBearing, ring: str) -> None:

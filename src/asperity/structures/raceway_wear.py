@@ -8,10 +8,10 @@ import numpy as np
 from asperity.arguments import Array, NDArray, positive
 from asperity.contact.friction import Friction, SlidingContact, cell_places
 from asperity.contact.groove_creepage import contact_curvature, sliding_across
-from asperity.structures.ball_bearing import Kinematics
 from asperity.structures.bearing_creepage import RINGS, BearingCreepage, Ring, creepage_of
 from asperity.structures.bearing_friction import ROOM, facts_of_contacts, rolling_speed
 from asperity.structures.bearing_statics import LoadedBearing
+from asperity.structures.rolling_bearing import Kinematics
 
 ACROSS = 81
 """Places across a contact at which depths are found."""

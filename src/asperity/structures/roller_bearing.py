@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
@@ -14,8 +14,9 @@ from asperity.contact.crowning import FORMS, OF_DIAMETER, Crowning, Form
 from asperity.contact.hertz import relative_radius
 from asperity.contact.slices import FEWEST, SLICES, SlicedContact
 from asperity.parameters import Choice, MaterialOrName, Number, Quantity, checked_parameters, parameter
-from asperity.reference.materials import MATERIALS, Material, contact_modulus
-from asperity.structures.ball_bearing import FASTEST, HARDNESS, BallBearing, Kinematics, tones_between
+from asperity.reference.materials import Material, contact_modulus
+from asperity.structures.ball_bearing import BallBearing
+from asperity.structures.rolling_bearing import GAP, HARD, HARDNESS, PRESSURE, STEEL, RollingBearing
 from asperity.units import written
 from asperity.written_numbers import rounded
 
@@ -37,15 +38,11 @@ CLEARANCE = 20e-6
 """Diametral clearance of the named bearings, m, chosen here."""
 STEEPEST_TILT = 0.1
 """Of a ring, rad, below which it is."""
-STEEL = MATERIALS["steel"]
 _LENGTH = Quantity("m", above=0)
-_GAP = "-1 mm to 10 mm: bearings lie between"
-_PRESSURE = Quantity("Pa", above=0)
-_HARD = "1 MPa to 100 GPa: no solid is as soft, or as hard"
 
 
 @dataclass(frozen=True)
-class RollerBearing:
+class RollerBearing(RollingBearing):
     """Roller bearing of one row: equal rollers between two rigid raceways, held apart by a cage.
 
     Parameters
@@ -106,8 +103,7 @@ class RollerBearing:
     '889 N, 1.41 GPa'
     """
 
-    ELEMENT: ClassVar = "roller"
-    """What rolls in it."""
+    ELEMENT = "roller"
     LEFT_OUT: ClassVar = (
         "There is no film of lubricant, no friction, and no rib but that of tapered rollers; while it turns "
         "rings are held at their tilt, rollers at half of it; slices of a roller do not know of each other, "
@@ -163,7 +159,7 @@ class RollerBearing:
         goes_with="taper",
     )
     clearance: float = parameter(
-        Quantity("m"), "20 um", "diametral clearance; below zero the rollers are pressed", _GAP, default=0.0
+        Quantity("m"), "20 um", "diametral clearance; below zero the rollers are pressed", GAP, default=0.0
     )
     crowning: Form = parameter(  # noqa: RUF009
         Choice(FORMS), "logarithmic", "form of the rollers along their length", default="logarithmic"
@@ -189,7 +185,7 @@ class RollerBearing:
         "slices along a roller",
         default=SLICES,
     )
-    hardness: float = parameter(_PRESSURE, "7 GPa", "hardness of the rings", _HARD, default=HARDNESS)
+    hardness: float = parameter(PRESSURE, "7 GPa", "hardness of the rings", HARD, default=HARDNESS)
     material: Material = parameter(  # noqa: RUF009
         MaterialOrName(), "steel", "material of the rings", default=STEEL
     )
@@ -202,11 +198,8 @@ class RollerBearing:
 
     def __post_init__(self) -> None:
         checked_parameters(self)
-        D, d_m = self.roller_diameter, self.pitch_diameter
-        room = d_m * math.sin(math.pi / self.rollers)  # between the centres of neighbours
-        received = f"{self.rollers} of {D * 1e3:.4g} mm on a pitch diameter of {d_m * 1e3:.4g} mm"
-        allowed = f"rollers that fit side by side: at most {room * 1e3:.4g} mm"
-        require(room >= D, "rollers", received, allowed, "Take fewer or smaller rollers.")
+        self.check_room()
+        D = self.roller_diameter
         received = f"{rounded(self.clearance * 1e6, 4)} µm"
         allowed = f"less than {rounded(D * 1e5)} µm, a tenth of the roller's diameter, to either side"
         require(abs(self.clearance) < 0.1 * D, "clearance", received, allowed, "Is the unit right?")
@@ -240,10 +233,6 @@ class RollerBearing:
         dimensions: dict[str, Any] = dict(ROLLER_BEARINGS[one_of("bearing", name, ROLLER_BEARINGS)])
         return cls(**(dimensions | {"clearance": CLEARANCE} | others))
 
-    def with_(self, **others: Any) -> RollerBearing:
-        """The same bearing with other values for some parameters, in SI."""
-        return replace(self, **others)
-
     @cached_property
     def profile(self) -> Crowning:
         """How far the rollers fall back along their length."""
@@ -251,12 +240,6 @@ class RollerBearing:
         if drop is None:
             drop = 0.0 if self.crowning == "cylindrical" else OF_DIAMETER * self.roller_diameter
         return Crowning(self.crowning, self.roller_length, drop, self.crowning_straight)
-
-    @property
-    def raceway_radii(self) -> tuple[float, float]:
-        """Radii of inner and outer raceway in the middle of a roller, (d_m ∓ D cos(α − β))/2, m."""
-        half = 0.5 * self.roller_diameter * math.cos(self.contact_angle - 0.5 * self.taper)
-        return 0.5 * self.pitch_diameter - half, 0.5 * self.pitch_diameter + half
 
     @cached_property
     def inner_contact(self) -> SlicedContact:
@@ -276,45 +259,25 @@ class RollerBearing:
         return SlicedContact(modulus, radius, self.profile, self.slices)
 
     @property
-    def fastest(self) -> float:
-        """Speed, turns per second, beyond which hardly any bearing of this size runs, Hz."""
-        return FASTEST / (60.0 * 1e3 * self.pitch_diameter)
-
-    @property
     def roller_mass(self) -> float:
         """Mass of a roller of its effective length, kg."""
         return 0.25 * math.pi * self.roller_diameter**2 * self.roller_length * self.roller_material.density
 
-    def centrifugal_force(self, speed: float) -> float:
-        """Force of a roller outwards, m (d_m/2) (2π f_c)², N, at a speed, turns per second."""
-        cage = 2.0 * math.pi * self.kinematics(speed).cage
-        return 0.5 * self.roller_mass * self.pitch_diameter * cage**2
+    @property
+    def half_taper(self) -> float:
+        """Angle β of a roller's sides to its axis, rad: half the taper."""
+        return 0.5 * self.taper
 
     @property
     def pushed_along(self) -> float:
         """Share sin β of a contact's force that pushes a roller along its axis, β half its taper."""
-        return math.sin(0.5 * self.taper)
+        return math.sin(self.half_taper)
 
     @property
     def flung_along(self) -> float:
         """Centrifugal force along the axis of a tapered roller over that along its normal."""
-        along = math.sin(self.contact_angle - 0.5 * self.taper) / self.flung_outwards(self.contact_angle)
+        along = math.sin(self.contact_angle - self.half_taper) / self.flung_outwards(self.contact_angle)
         return along if self.taper else 0.0
-
-    def flung_outwards(self, contact_angle: float) -> float:
-        """Share of centrifugal force by which the outer contact carries more than the inner one.
-
-        That across the axis of a roller, cos(α − β), by contacts that lie β from there.
-        """
-        half = 0.5 * self.taper
-        return math.cos(contact_angle - half) / math.cos(half)
-
-    def flung_axially(self, lift: float) -> float:
-        """Force of the ribs of tapered rollers on the inner ring, N, against an axial load.
-
-        It comes of what each roller is thrown along its normal, N: so much less presses the inner contacts.
-        """
-        return self.rollers * lift * math.sin(self.contact_angle) if self.taper else 0.0
 
     @property
     def rib(self) -> str:
@@ -347,22 +310,22 @@ class RollerBearing:
     # --- by the names that whatever rolls in a bearing has
 
     @property
-    def balls(self) -> int:
+    def balls(self) -> int:  # type: ignore[override]
         """Number of rollers."""
         return self.rollers
 
     @property
-    def ball_diameter(self) -> float:
+    def ball_diameter(self) -> float:  # type: ignore[override]
         """Diameter of a roller, m."""
         return self.roller_diameter
 
     @property
-    def ball_mass(self) -> float:
+    def ball_mass(self) -> float:  # type: ignore[override]
         """Mass of a roller, kg."""
         return self.roller_mass
 
     @property
-    def free_angle(self) -> float:
+    def free_angle(self) -> float:  # type: ignore[override]
         """Contact angle, rad: that of the raceways."""
         return self.contact_angle
 
@@ -380,32 +343,6 @@ class RollerBearing:
         """Gap of both contacts of a roller, rings centred, along their normal at an angle, rad; m."""
         return 0.5 * self.clearance * math.cos(contact_angle)
 
-    # --- what turns how fast
-
-    def kinematics(
-        self, speed: float, *, contact_angle: float | None = None, slip: float = 0.0
-    ) -> Kinematics:
-        """How fast everything turns where rollers roll without sliding, but for a slip of the cage.
-
-        Parameters
-        ----------
-        speed : float
-            Of the ring that turns, turns per second.
-        contact_angle : float, optional
-            Of the outer raceway, rad; its own by default. Tapered rollers roll at that of their axis, β less.
-        slip : float
-            Share by which the cage is slower than in pure rolling.
-
-        Returns
-        -------
-        Kinematics
-            Frequencies, Hz: those of balls there are those of rollers.
-        """
-        diameters = self.roller_diameter, self.pitch_diameter
-        angle = self.contact_angle if contact_angle is None else contact_angle
-        axis = angle - 0.5 * self.taper
-        return Kinematics.rolling(self.rollers, diameters, axis, self.turning, speed=speed, slip=slip)
-
     def tones(self, axial: bool = False) -> dict[str, Tone]:
         """Tones of faults of its parts per turn, and how far slip may move them.
 
@@ -419,7 +356,7 @@ class RollerBearing:
         dict
             As of `BallBearing.tones`, of raceways whose angle stays: for a cage that lags by up to 1 %.
         """
-        return tones_between(self, *[self.contact_angle] * 3)
+        return self.tones_between(*[self.contact_angle] * 3)
 
     def loaded(
         self,

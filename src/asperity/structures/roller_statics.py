@@ -1,15 +1,16 @@
 """How a roller bearing carries a load at rest: the energy of all slices is least there, and convex."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from asperity.arguments import Array, ArrayLike, finite_array, not_negative, require
 from asperity.contact.slices import EXPONENT, SlicedContact
 from asperity.errors import ComputationError, Grade, InputError, OutOfRangeWarning, percent
-from asperity.structures.bearing_statics import STEPS, angles_of_cage, speed_of_leaving
+from asperity.structures.bearing_statics import LoadedRow, angles_of_cage, doubt_pressure
 from asperity.structures.least_energy import TOLERANCE, least_energy
 from asperity.structures.roller_bearing import STEEPEST_TILT, RollerBearing
 from asperity.written_numbers import rounded
@@ -27,7 +28,7 @@ FORCES, MOMENTS = slice(0, 3), slice(3, 5)
 
 
 @dataclass(frozen=True, eq=False)
-class LoadedRollers:
+class LoadedRollers(LoadedRow):
     """A roller bearing under a load at m angles of its cage, its Z rollers of n slices at ψ from it.
 
     Attributes
@@ -65,7 +66,7 @@ class LoadedRollers:
     imbalance: float
 
     @property
-    def inner_load(self) -> Array:
+    def inner_load(self) -> Array:  # type: ignore[override]
         """Loads of the contacts with the inner ring (m, Z), N."""
         return self.inner_slices.sum(axis=-1)
 
@@ -154,26 +155,10 @@ class LoadedRollers:
         """Angle of the contacts, rad: that of the raceways."""
         return self.bearing.contact_angle
 
-    @property
-    def touching(self) -> Array:
-        """How many rollers touch the inner ring, at each angle of the cage (m,)."""
-        return np.asarray(np.count_nonzero(self.inner_load, axis=1), dtype=float)
-
-    @cached_property
-    def leaving_speed(self) -> float | None:
-        """Turns per second from which on rollers leave the inner ring, all of which are pressed at rest.
-
-        None where it stands still or is slower, or where some roller is not pressed at rest.
-        """
+    def at_speed(self, speed: float) -> LoadedRollers:
+        """The same load and tilt at another speed, turns per second."""
         load = np.array([self.radial, 0.0, self.axial, 0.0, 0.0])
-        angles = self.azimuth[:, 0]
-
-        def all_touch(speed: float) -> bool:
-            found = _solved(self.bearing, load, self.displacement[0, MOMENTS], speed, angles)
-            return bool(found.touching.min() == self.bearing.rollers)
-
-        pressed = self.touching.min() == self.bearing.rollers
-        return None if pressed else speed_of_leaving(all_touch, self.speed)
+        return _solved(self.bearing, load, self.displacement[0, MOMENTS], speed, self.azimuth[:, 0])
 
 
 def roller_load_distribution(
@@ -202,9 +187,7 @@ def roller_load_distribution(
     held = radial + axial > 0.0 or turned or bearing.clearance < 0.0
     remedy = "Without one the inner ring is loose."
     require(held, "load", "none", "a radial or axial load, a moment, a tilt or an interference", remedy)
-    if cage_angles is None:
-        cage_angles = 2.0 * math.pi / bearing.rollers * np.arange(STEPS) / STEPS
-    angles = angles_of_cage(cage_angles)
+    angles = angles_of_cage(bearing, cage_angles)
     load = np.array([radial, 0.0, axial, *moments])
     prescribed = tilted if moment is None else None
     try:
@@ -311,7 +294,7 @@ def _solved(
     bearing: RollerBearing, load: Array, tilt: Array | None, speed: float, angles: Array
 ) -> LoadedRollers:
     """The inner ring in balance at each angle of the cage; tilted as it is told, or as moments tilt it."""
-    azimuth = angles[:, None] + 2.0 * math.pi / bearing.rollers * np.arange(bearing.rollers)
+    azimuth = bearing.azimuths(angles)
     moved = _followed(bearing, azimuth)
     lift = bearing.centrifugal_force(speed) * bearing.flung_outwards(bearing.contact_angle)
     inner, outer = bearing.inner_contact, bearing.outer_contact
@@ -393,13 +376,7 @@ def _doubt(found: LoadedRollers) -> None:
         received = f"half a width of {rounded(width, 2)} radii on the {ring} ring"
         allowed = f"at most {STEEPEST:g}, where the roller is an elastic half-space"
         require(width <= STEEPEST, "contact", received, allowed, "Lower the load or the tilt.")
-        limit = min(STATIC_PRESSURE, of.hardness)
-        if peak > limit:
-            hard = peak > of.hardness
-            means = "the hardness: the rings flow" if hard else "where dents begin (ISO 76)"
-            told = f"Rollers press the {ring} ring with {rounded(peak / 1e9)} GPa, above {limit / 1e9:g} GPa"
-            grade = Grade.OUT if hard else Grade.WARNING
-            OutOfRangeWarning.warn(f"{told}, {means}. Lower the load or the tilt.", grade)
+        doubt_pressure(of, ring, peak, STATIC_PRESSURE, "Lower the load or the tilt")
     _doubt_crowning(found)
 
 

@@ -5,10 +5,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from asperity.arguments import positive, require
-from asperity.structures.ball_bearing import PARTS, BallBearing
+from asperity.structures.ball_bearing import BallBearing
 from asperity.structures.bearing_statics import LoadedBearing
 from asperity.structures.roller_bearing import AnyBearing
 from asperity.structures.roller_statics import LoadedRollers
+from asperity.structures.rolling_bearing import PARTS
 
 BELOW = 0.5
 """Share of the frequency of the outer ring on its balls up to which it follows waves as it would at rest: at

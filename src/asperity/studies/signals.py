@@ -21,7 +21,7 @@ from asperity.results import save, variable
 from asperity.schema.bearing import TACHO
 from asperity.speeds import SpeedCourse, covered, speed_at
 from asperity.store import content_key
-from asperity.structures.ball_bearing import PARTS
+from asperity.structures.rolling_bearing import PARTS
 from asperity.studies import common_schema
 from asperity.studies.axes import AS_IT_IS, VARIANT, written_out
 from asperity.studies.definition import Member
