@@ -12,10 +12,9 @@ from asperity.contact.hertz import Hertz
 from asperity.running import prepare_case
 from asperity.scenarios.prepared_bearing import expected, prepare_bearing
 from asperity.scenarios.raceway_films import RacewayFilm, rms_within
-from asperity.scenes.bearing_film import OBSERVER
 from asperity.scenes.computed_bearing import compute_bearing
 from asperity.scenes.figures.bearing import ball_films, films_table
-from asperity.schema import Entry
+from asperity.schema import Entry, bearing, declared
 from asperity.structures.ball_bearing import BallBearing
 from asperity.studies.member import kept
 from asperity.surfaces.raceway import Raceway
@@ -58,8 +57,9 @@ def test_films_are_those_of_the_formula_under_the_loads_of_the_balls(films):
     assert "both surfaces are smooth" in found["film_parameter"].attrs["missing"]
     assert found.attrs["oil_viscosity"] == case.films[0].viscosity
     assert found.attrs["left_out"] == BallBearing.LEFT_OUT_OILED
-    declared = {each.name: each.units for each in OBSERVER.entries if isinstance(each, Entry)}
-    assert declared == {name: found[name].attrs["units"] for name in declared}
+    of_oil = (each for each in declared(bearing) if each.condition == bearing.OILED)
+    units = {each.name: each.units for each in of_oil if isinstance(each, Entry)}
+    assert units == {name: found[name].attrs["units"] for name in units}
     assert BallBearing.LEFT_OUT_OILED in films.attrs["verdict"]
     rows = json.loads(films["contact"].attrs["validity"])
     (row,) = (each for each in rows if "on the inner ring" in each["quantity"])

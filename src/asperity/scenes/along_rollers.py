@@ -4,7 +4,7 @@ import numpy as np
 
 from asperity.arguments import Array
 from asperity.scenes.computed_bearing import ComputedBearing
-from asperity.scenes.observer import Observer
+from asperity.scenes.observer import DECLARED, Observer
 from asperity.schema import Values, bearing
 from asperity.structures.roller_statics import LoadedRollers
 
@@ -32,7 +32,7 @@ def _has_rollers(computed: ComputedBearing) -> bool:
 
 OBSERVER = Observer(
     "along_rollers",
-    (bearing.ALONG_ROLLER, bearing.LINE_LOAD, bearing.LINE_PRESSURE),
+    DECLARED,
     along_group,
     needs=("bearing",),
     asked_of=_has_rollers,

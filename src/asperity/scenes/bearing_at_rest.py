@@ -5,7 +5,7 @@ import numpy as np
 from asperity.arguments import Array
 from asperity.scenarios.prepared_bearing import RINGS, omitted_from
 from asperity.scenes.computed_bearing import ComputedBearing
-from asperity.scenes.observer import Observer
+from asperity.scenes.observer import DECLARED, Observer
 from asperity.schema import Values, bearing
 from asperity.structures.bearing_statics import LoadedBearing
 from asperity.structures.rolling_bearing import PARTS, Kinematics
@@ -62,30 +62,7 @@ def rest_group(computed: ComputedBearing) -> Values:
 
 OBSERVER = Observer(
     "bearing_at_rest",
-    (
-        bearing.ELEMENT,
-        bearing.LEFT_OUT,
-        bearing.RING,
-        bearing.BALL,
-        bearing.DIRECTION,
-        bearing.CAGE,
-        bearing.CAGE_ANGLE,
-        bearing.AZIMUTH,
-        bearing.BALL_LOAD,
-        bearing.BALL_ANGLE,
-        bearing.PEAK_PRESSURE,
-        bearing.SEMI_AXIS_ALONG,
-        bearing.SEMI_AXIS_ACROSS,
-        bearing.RING_DISPLACEMENT,
-        bearing.RING_STIFFNESS,
-        bearing.BALL_DIAMETER,
-        bearing.PITCH_DIAMETER,
-        bearing.CONTACT_ANGLE,
-        bearing.PART,
-        bearing.TONE,
-        bearing.MODULATION,
-        bearing.TURNING,
-    ),
+    DECLARED,
     rest_group,
     needs=("bearing",),
 )

@@ -4,7 +4,7 @@ import numpy as np
 
 from asperity.contact.hertz import Hertz
 from asperity.scenes.computed_bearing import ComputedBearing
-from asperity.scenes.observer import Observer
+from asperity.scenes.observer import DECLARED, Observer
 from asperity.schema import Values, bearing
 from asperity.structures.bearing_creepage import creepage_of
 
@@ -28,7 +28,7 @@ def _has_grooves(computed: ComputedBearing) -> bool:
 
 OBSERVER = Observer(
     "bearing_creepage",
-    (bearing.SPIN_CREEPAGE, bearing.RIM_CREEPAGE, bearing.SLIDING_HEAT),
+    DECLARED,
     creepage_group,
     needs=("bearing",),
     asked_of=_has_grooves,

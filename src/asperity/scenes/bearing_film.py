@@ -9,7 +9,7 @@ from asperity.errors import Finding, Grade, percent
 from asperity.scenarios.prepared_bearing import RINGS
 from asperity.scenarios.raceway_films import RacewayFilm, films_on
 from asperity.scenes.computed_bearing import ComputedBearing
-from asperity.scenes.observer import Observer
+from asperity.scenes.observer import DECLARED, Observer
 from asperity.schema import Values, bearing
 from asperity.written_numbers import rounded
 
@@ -90,21 +90,7 @@ def films_cited(computed: ComputedBearing) -> list[str]:
 
 OBSERVER = Observer(
     "bearing_film",
-    (
-        bearing.FILM_THICKNESS,
-        bearing.LEAST_FILM,
-        bearing.FILM_PARAMETER,
-        bearing.HEAVIEST_FILM,
-        bearing.HEAVIEST_PARAMETER,
-        bearing.FILM_RMS,
-        bearing.FILM_STIFFNESS,
-        bearing.FILM_DAMPING,
-        bearing.FILM_HEATING,
-        bearing.ASPERITY_SHARE,
-        bearing.FILM_FORMULA,
-        bearing.OIL_VISCOSITY,
-        bearing.OIL_PRESSURE,
-    ),
+    DECLARED,
     films_group,
     needs=("bearing",),
     asked_of=lambda computed: computed.case.films is not None,

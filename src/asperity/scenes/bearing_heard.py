@@ -11,7 +11,7 @@ from asperity.case.ball_bearing import BearingUnderLoad
 from asperity.diagnostics import ISO_BANDS, LineFamily, Spectrum, band_velocities, one_anderon
 from asperity.diagnostics.orders import envelope_order_spectrum
 from asperity.rolling.bearing import RolledBearing
-from asperity.scenes.observer import Observer
+from asperity.scenes.observer import DECLARED, Observer
 from asperity.schema import Values, bearing, spectra
 from asperity.speeds import SpeedCourse
 from asperity.structures.rolling_bearing import PARTS
@@ -121,24 +121,7 @@ def _of_lines(found: Mapping[str, LineFamily], what: str) -> list[Array]:
 
 OBSERVER = Observer(
     "bearing_heard",
-    (
-        spectra.LAW,
-        spectra.FREQUENCY,
-        bearing.VELOCITY_AMPLITUDE,
-        bearing.SENSOR,
-        bearing.JUDGED_BAND,
-        bearing.BAND_VELOCITY,
-        bearing.BAND_ANDERONS,
-        bearing.ENVELOPE_LOW,
-        bearing.ENVELOPE_HIGH,
-        bearing.ENVELOPE_SPEED,
-        bearing.LAW,
-        bearing.ENVELOPE_FREQUENCY,
-        bearing.ENVELOPE,
-        bearing.HARMONIC,
-        *LINES,
-        bearing.LINES_FOUND,
-    ),
+    DECLARED,
     lambda computed: heard_group(computed.case, computed.rolled),
     needs=("bearing",),
     sources=(

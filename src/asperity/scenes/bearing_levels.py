@@ -2,7 +2,7 @@
 
 from asperity.diagnostics import band_deviations
 from asperity.scenes.computed_bearing import ComputedBearing
-from asperity.scenes.observer import Observer
+from asperity.scenes.observer import DECLARED, Observer
 from asperity.scenes.schema import ACCELERATION_REFERENCE
 from asperity.schema import Values, bearing, spectra
 from asperity.spectra import (
@@ -39,15 +39,7 @@ def levels_group(computed: ComputedBearing) -> Values:
 
 OBSERVER = Observer(
     "bearing_levels",
-    (
-        spectra.BAND,
-        spectra.BAND_TIME_PRODUCT,
-        spectra.LEVEL_DEVIATION,
-        spectra.FORCE_LEVEL,
-        bearing.SPECTRA_SENSOR,
-        bearing.ACCELERATION_LEVEL,
-        bearing.BAND_DEVIATION,
-    ),
+    DECLARED,
     levels_group,
     needs=("bearing",),
 )

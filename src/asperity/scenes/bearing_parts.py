@@ -5,7 +5,7 @@ import numpy as np
 from asperity.arguments import Array
 from asperity.diagnostics import band_deviations, band_velocities
 from asperity.scenes.computed_bearing import BY_PARTS, ComputedBearing
-from asperity.scenes.observer import Observer
+from asperity.scenes.observer import DECLARED, Observer
 from asperity.schema import Values, bearing
 
 
@@ -27,7 +27,7 @@ def parts_group(computed: ComputedBearing) -> Values:
 
 OBSERVER = Observer(
     "bearing_parts",
-    (bearing.SOURCE, bearing.ALONE_VELOCITY, bearing.ALONE_DEVIATION),
+    DECLARED,
     parts_group,
     needs=("bearing",),
     asked_of=lambda computed: bool(computed.alone),

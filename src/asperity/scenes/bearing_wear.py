@@ -1,7 +1,7 @@
 """Wear of the raceways of a ball bearing over the angle around them, by Archard's law."""
 
 from asperity.scenes.computed_bearing import ComputedBearing
-from asperity.scenes.observer import Observer
+from asperity.scenes.observer import DECLARED, Observer
 from asperity.schema import Values, bearing
 from asperity.structures.raceway_wear import raceway_wear
 
@@ -25,7 +25,7 @@ def _wears(computed: ComputedBearing) -> bool:
 
 OBSERVER = Observer(
     "bearing_wear",
-    (bearing.RACEWAY_ANGLE, bearing.WEAR_RATE, bearing.WORN_AREA_RATE, bearing.WORN_VOLUME_RATE),
+    DECLARED,
     wear_group,
     needs=("bearing",),
     asked_of=_wears,

@@ -20,9 +20,9 @@ from asperity.scenarios.reducing import LIGHTEST_STATE
 from asperity.scenarios.scene import PreparedCase
 from asperity.scenes import compute, schema
 from asperity.scenes.computed_bearing import ComputedBearing
-from asperity.scenes.observer import Observer
+from asperity.scenes.observer import DECLARED, Observer
 from asperity.scenes.sideways import Sideways
-from asperity.schema import Values, bearing, declared
+from asperity.schema import Values, bearing
 from asperity.speeds import speed_at
 from asperity.structures.bearing_creepage import RINGS, creepage_of
 from asperity.structures.bearing_friction import (
@@ -277,16 +277,13 @@ def _rubs(computed: ComputedBearing) -> bool:
 
 OBSERVER = Observer(
     "creep",
-    [each for each in declared(schema) if each.condition.startswith(schema.CREEPS)],
+    DECLARED,
     creep_group,
     sources=SOURCES,
 )
 OF_BALLS = Observer(
     "creep_of_balls",
-    [
-        *(each for each in declared(bearing) if each.condition == bearing.RUBBING),
-        *(each for each in declared(schema) if each.condition == schema.CREEPS_OR_RUBS),
-    ],
+    DECLARED,
     ball_group,
     needs=("bearing",),
     asked_of=_rubs,

@@ -3,7 +3,7 @@
 import json
 import re
 import warnings
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
 
@@ -31,6 +31,8 @@ from asperity.schema import (
 
 DECLARING = (bearing, contact, convergence, measured, provenance, rolling, spectra, schema)
 """Modules that declare what results hold."""
+DECLARED = frozenset(item for module in DECLARING for item in declared(module))
+"""All that these declare: what an observer of this program may lay out."""
 QUANTITIES = {
     "contact_force": "forces of all contacts in time (contacts, steps), N",
     "acceleration": "accelerations at sensors in time (sensors, steps), m/s²",
@@ -83,8 +85,8 @@ class Observer:
     ----------
     name : str
         What is looked at; of a package of one's own the group of the result in which its entries stand.
-    entries : sequence of Entry and Attribute
-        All that it may lay out, each with its dimensions, unit and meaning.
+    entries : collection of Entry and Attribute
+        All that it may lay out, each with its dimensions, unit and meaning; `DECLARED` of what is built in.
     observe : callable
         ``observe(computed)`` returns values of some of them, by entry, of a run: its case, its records in
         time by law, and what its kind has beside (`ComputedRun`).
@@ -108,7 +110,7 @@ class Observer:
     """
 
     name: str
-    entries: Sequence[Entry | Attribute]
+    entries: Collection[Entry | Attribute]
     observe: Callable[[Any], Values]
     needs: Sequence[str] = OVER_A_STRUCTURE
     asked_of: Callable[[Any], bool] = _everywhere
@@ -228,7 +230,7 @@ def _installed(name: str, observer: Any) -> Observer:
     )
     elsewhere = sorted({each.group for each in observer.entries if each.group != name})
     require(not elsewhere, f"observer {name}", ", ".join(elsewhere), f'entries of the group "{name}"')
-    taken = {item.group for module in DECLARING for item in declared(module)}
+    taken = {item.group for item in DECLARED}
     allowed = f"a group of its own, none of {', '.join(sorted(taken - {''}))}"
     require(name not in taken, "group of the observer", name, allowed)
     return observer

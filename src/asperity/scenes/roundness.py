@@ -11,7 +11,7 @@ from asperity.arguments import Array
 from asperity.reporting import data
 from asperity.scenarios.scene import PreparedCase
 from asperity.scenes import schema
-from asperity.scenes.observer import Observer
+from asperity.scenes.observer import DECLARED, Observer
 from asperity.schema import Values
 from asperity.spectra import level_of
 from asperity.speeds import at_fastest, reached
@@ -119,7 +119,7 @@ def orders_group(prepared: PreparedCase) -> Values:
 
 OBSERVER = Observer(
     "roundness",
-    (schema.ORDER, schema.ORDER_FREQUENCY, schema.ORDER_LEVEL, schema.RUN_OUT),
+    DECLARED,
     orders_group,
     numerics=planned_roundness,
 )

@@ -5,7 +5,7 @@ import numpy as np
 from asperity.arguments import Array
 from asperity.diagnostics.orders import LEAST_CHANGE, RunUp, order_spectrum, resonances_apart, run_up
 from asperity.scenes.computed_bearing import ComputedBearing
-from asperity.scenes.observer import Observer
+from asperity.scenes.observer import DECLARED, Observer
 from asperity.schema import Values, bearing
 from asperity.speeds import SpeedCourse, slowest
 
@@ -86,18 +86,7 @@ def _speed_changes(computed: ComputedBearing) -> bool:
 
 OBSERVER = Observer(
     "run_up",
-    (
-        bearing.ORDER,
-        bearing.ORDER_AMPLITUDE,
-        bearing.RUN_UP_SPEED,
-        bearing.RUN_UP_FREQUENCY,
-        bearing.RUN_UP_AMPLITUDE,
-        bearing.FOLLOWING_ORDER,
-        bearing.FOLLOWS,
-        bearing.STAYING_FREQUENCY,
-        bearing.STAYS,
-        bearing.UNEXPLAINED,
-    ),
+    DECLARED,
     run_up_group,
     needs=("bearing",),
     asked_of=_speed_changes,

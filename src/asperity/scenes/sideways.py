@@ -13,8 +13,8 @@ from asperity.radiation.track import SideOfRail, squared_lateral_mobility
 from asperity.radiation.wheel import RadiatingWheel, fine_lines, line_means
 from asperity.scenarios.scene import force_transfer
 from asperity.scenes import compute, noise, schema
-from asperity.scenes.observer import Observer
-from asperity.schema import Values, declared
+from asperity.scenes.observer import DECLARED, Observer
+from asperity.schema import Values
 from asperity.structures import lateral_rail, modal
 from asperity.structures.track import Track
 from asperity.structures.wheel_modes import WheelModes
@@ -256,7 +256,7 @@ def sideways_group(computed: compute.Computed) -> Values:
 
 OBSERVER = Observer(
     "sideways",
-    [each for each in declared(schema) if each.group == "sideways"] + [schema.LATERAL_FORCE_PSD],
+    DECLARED,
     lambda computed: computed.derived(sideways_group),
     needs=("track",),
     sources=SOURCES,

@@ -17,10 +17,10 @@ from asperity.scenarios.records import spectrum_levels
 from asperity.scenarios.scene import PreparedCase, Receptance, Scene, mean_square_transfer
 from asperity.scenarios.textures import self_affine_keys
 from asperity.scenes import beside_track, cnossos_power, compute, measured, noise, schema
-from asperity.scenes.observer import Observer
+from asperity.scenes.observer import DECLARED, Observer
 from asperity.scenes.over_frequency import held_values
 from asperity.scenes.sideways import sideways_group, sideways_of
-from asperity.schema import Values, declared, group
+from asperity.schema import Values, group
 from asperity.schema import spectra as spectra_schema
 from asperity.speeds import SpeedCourse, at_fastest, slowest
 from asperity.structures.causal_track import causal_track
@@ -355,7 +355,7 @@ def findings_of_noise(computed: compute.Computed) -> list[Finding]:
 
 TRACK = Observer(
     "track",
-    [each for each in declared(schema) if each.group == "track"],
+    DECLARED,
     track_group,
     needs=("track",),
     findings=lambda computed: findings_of_losses(computed.derived(losses_of)),
@@ -365,7 +365,7 @@ TRACK = Observer(
 """The track by itself."""
 RAIL = Observer(
     "rail",
-    [each for each in declared(schema) if each.group == "spectra"],
+    DECLARED,
     lambda computed: computed.derived(track_spectra),
     needs=("track",),
     findings=findings_of_noise,
@@ -374,7 +374,7 @@ RAIL = Observer(
 """Motion and sound power of what rolls over a track, over frequency."""
 PASS_BY = Observer(
     "pass_by",
-    [each for each in declared(schema) if each.group == "pass_by"],
+    DECLARED,
     pass_by_of,
     needs=("track",),
     asked_of=lambda computed: not isinstance(computed.case.speed, SpeedCourse),
