@@ -289,28 +289,6 @@ def refuse_other_case(what: str, asked: str, case: Path, by: str) -> None:
         raise taken_folder(case.parent, f"a folder that holds another {case.name}", by)
 
 
-SIGNALS = {
-    "signals": ("FOLDER", "Of ball bearings: write the acceleration of each, and labels.csv."),
-    "format": (
-        "FORMAT",
-        "Of these signals: nc, npy, wav, uff, or parquet, which bearing-datasets opens. [default: nc]",
-    ),
-    "path": (
-        "PATH",
-        "Impulse response of a path to the sensor: .npy, .wav or table; or drawn: '1..6 kHz, 3 resonances'.",
-    ),
-    "path-rate": ("FREQUENCY", "Its sampling rate, as '48 kHz'."),
-    "noise": ("LEVEL", "Noise: '20 dB' below the signal, an rms, '0.5 m/s^2', or drawn: '0..30 dB'."),
-}
-
-
-def signals(function: Any) -> Any:
-    """What a study writes of each bearing, and what lies between it and the record."""
-    for name, (metavar, help) in reversed(SIGNALS.items()):
-        function = click.option(f"--{name}", metavar=metavar, help=help)(function)
-    return function
-
-
 def _choose_device(context: click.Context, option: click.Parameter, name: str | None) -> None:
     if name is not None:
         from asperity.contact.batched import choose_device
@@ -349,199 +327,199 @@ laws = click.option(
 )
 
 
+def _option(names: str, help: str, value: str | None = None, **more: Any) -> click.Option:
+    """An option by its names, with blanks between, and the word for its value."""
+    return click.Option(names.split(), metavar=value, help=help, **more)
+
+
+def _flag(names: str, help: str) -> click.Option:
+    """An option that is given or not."""
+    return click.Option(names.split(), is_flag=True, help=help)
+
+
 SURFACE = [
-    click.Option(["--array"], help="Name of the array, where the file holds several."),
-    click.Option(
-        ["--index"], type=int, help="Which map of an ensemble, from 0. [default: all, the first one pictured]"
+    _option("--array", "Name of the array, where the file holds several."),
+    _option("--index", "Which map of an ensemble, from 0. [default: all, the first one pictured]", type=int),
+    _option("--height-unit", "Unit of heights that carry none, as 'um'.", "UNIT"),
+    _option("--pixel", "Distance of points that carry none, as '1.5625 um'.", "LENGTH"),
+    _option("--pixel-unit", "Unit of coordinates that carry none, as 'mm'.", "UNIT"),
+    _option("--decimal", "Decimal mark of a text, '.' or ',', where in doubt.", "MARK"),
+    _flag("--transpose", "Exchange x and y: roll along the other direction."),
+    _option(
+        "--direction --rotate direction", "Roll in this direction, from x towards y, as '30 deg'.", "ANGLE"
     ),
-    click.Option(["--height-unit"], metavar="UNIT", help="Unit of heights that carry none, as 'um'."),
-    click.Option(["--pixel"], metavar="LENGTH", help="Distance of points that carry none, as '1.5625 um'."),
-    click.Option(["--pixel-unit"], metavar="UNIT", help="Unit of coordinates that carry none, as 'mm'."),
-    click.Option(["--decimal"], metavar="MARK", help="Decimal mark of a text, '.' or ',', where in doubt."),
-    click.Option(["--transpose"], is_flag=True, help="Exchange x and y: roll along the other direction."),
-    click.Option(
-        ["--direction", "--rotate", "direction"],
-        metavar="ANGLE",
-        help="Roll in this direction, from x towards y, as '30 deg'.",
-    ),
-    click.Option(["--fill"], is_flag=True, help="Fill points without a height."),
-    click.Option(
-        ["--crop"], metavar="LENGTHS", help="Keep a piece: '0 mm, 0 mm, 1 mm, 0.5 mm' (x, y, sides)."
-    ),
-    click.Option(["--form"], metavar="FORM", help="Remove plane, quadratic or quartic."),
-    click.Option(["--longest"], metavar="LENGTH", help="Nesting index of the L-filter (ISO 16610-21, -61)."),
-    click.Option(["--shortest"], metavar="LENGTH", help="Nesting index of the S-filter, likewise Gaussian."),
-    click.Option(["--recipe"], type=PATH, help="Do what a stored recipe says; options are stronger."),
-    click.Option(["--store"], type=PATH, help="Store all that was done as a recipe that a case can name."),
-    click.Option(["--spikes"], is_flag=True, help="Take spikes for points without a height."),
-    click.Option(
-        ["--lines/--map"],
+    _flag("--fill", "Fill points without a height."),
+    _option("--crop", "Keep a piece: '0 mm, 0 mm, 1 mm, 0.5 mm' (x, y, sides).", "LENGTHS"),
+    _option("--form", "Remove plane, quadratic or quartic.", "FORM"),
+    _option("--longest", "Nesting index of the L-filter (ISO 16610-21, -61).", "LENGTH"),
+    _option("--shortest", "Nesting index of the S-filter, likewise Gaussian.", "LENGTH"),
+    _option("--recipe", "Do what a stored recipe says; options are stronger.", type=PATH),
+    _option("--store", "Store all that was done as a recipe that a case can name.", type=PATH),
+    _flag("--spikes", "Take spikes for points without a height."),
+    _option(
+        "--lines/--map",
+        "Take an array for lines measured side by side, or for a map. [default: by its shape]",
         default=None,
-        help="Take an array for lines measured side by side, or for a map. [default: by its shape]",
     ),
-    click.Option(["--psd"], is_flag=True, help="Write the spectra of the picture as CSV beside it."),
+    _flag("--psd", "Write the spectra of the picture as CSV beside it."),
 ]
 """Hints on a measured file, and steps that are taken with it: keys of a recipe."""
 BEARING = [
-    click.Option(["--radial"], metavar="FORCE", help="Radial load on the inner ring, as '100 N'."),
-    click.Option(["--axial"], metavar="FORCE", help="Axial load on it."),
-    click.Option(
-        ["--tilt"], metavar="ANGLE", help="Tilt of an inner ring on rollers in the plane of the radial load."
-    ),
-    click.Option(["--speed"], metavar="SPEED", help="Of the ring that turns, as '1800 1/min'."),
-    click.Option(["--clearance"], metavar="LENGTH", help="Diametral clearance, as '10 um'."),
-    click.Option(["--oil"], metavar="GRADE", help="Oil in the contacts, as 'ISO VG 68': films."),
-    click.Option(["--temperature"], metavar="DEGREES", help="Of the oil. [default: '70 degC']"),
-    click.Option(
-        ["--signal"],
+    _option("--radial", "Radial load on the inner ring, as '100 N'.", "FORCE"),
+    _option("--axial", "Axial load on it.", "FORCE"),
+    _option("--tilt", "Tilt of an inner ring on rollers in the plane of the radial load.", "ANGLE"),
+    _option("--speed", "Of the ring that turns, as '1800 1/min'.", "SPEED"),
+    _option("--clearance", "Diametral clearance, as '10 um'.", "LENGTH"),
+    _option("--oil", "Oil in the contacts, as 'ISO VG 68': films.", "GRADE"),
+    _option("--temperature", "Of the oil. [default: '70 degC']", "DEGREES"),
+    _option(
+        "--signal",
+        "Acceleration of it: .npz, .npy, .mat, .wav, .uff, .parquet or text; more files may follow.",
         type=PATH,
         multiple=True,
-        help="Acceleration of it: .npz, .npy, .mat, .wav, .uff, .parquet or text; more files may follow.",
     ),
-    click.Option(
-        ["--rate"],
-        metavar="FREQUENCY",
-        help="Sampling rate of the signal, as '12 kHz', unless times beside it give it.",
+    _option(
+        "--rate", "Sampling rate of the signal, as '12 kHz', unless times beside it give it.", "FREQUENCY"
     ),
-    click.Option(["--array"], help="Name of the signal, where a file holds several."),
-    click.Option(["--column"], type=int, help="Number of its column, from 1, where there are several."),
-    click.Option(
-        ["--tacho"],
-        metavar="COLUMN",
-        help="Column of a tacho or a speed beside it, by number, or its array: it is read over angle.",
+    _option("--array", "Name of the signal, where a file holds several."),
+    _option("--column", "Number of its column, from 1, where there are several.", type=int),
+    _option(
+        "--tacho",
+        "Column of a tacho or a speed beside it, by number, or its array: it is read over angle.",
+        "COLUMN",
     ),
-    click.Option(
-        ["--tacho-reads"],
-        metavar="WHAT",
-        help="What the tacho reads: '1/min', 'Hz', or '60 pulses' in a turn. [default: as its heading says]",
+    _option(
+        "--tacho-reads",
+        "What the tacho reads: '1/min', 'Hz', or '60 pulses' in a turn. [default: as its heading says]",
+        "WHAT",
     ),
-    click.Option(
-        ["--band"], help="Frequencies of the envelope: 'all', or as '2 kHz, 4 kHz'. [default: found]"
-    ),
-    click.Option(
-        ["--known"],
+    _option("--band", "Frequencies of the envelope: 'all', or as '2 kHz, 4 kHz'. [default: found]"),
+    _option(
+        "--known",
+        "Part that is known to have a fault: whether the record shows it is said.",
         type=click.Choice(["outer", "inner", "ball", "roller"]),
-        help="Part that is known to have a fault: whether the record shows it is said.",
     ),
-    click.Option(
-        ["--table"],
-        type=PATH,
-        metavar="FILE",
-        help="Write stiffness and damping matrices over lists or ranges of --radial, --axial and --speed, as "
+    _option(
+        "--table",
+        "Write stiffness and damping matrices over lists or ranges of --radial, --axial and --speed, as "
         "'100..500 N, 5 steps': .csv, or .json with elements for ROSS.",
-    ),
-    click.Option(["--damping", "contact_damping"], help="Of each contact, for --table, as '20 N s/m'."),
-    click.Option(
-        ["--cage-angle"], help="Angles of the cage for --table, as '0..40 deg, 5 steps'. [default: means]"
-    ),
-    click.Option(
-        ["--load-direction"], help="Of the radial load from x towards y, for --table, as '-90 deg'."
-    ),
-    click.Option(
-        ["--sheet"],
+        "FILE",
         type=PATH,
-        metavar="FILE",
-        help="Write its data sheet, .html: geometry, stiffness over load, tones; of the folder of a run in "
+    ),
+    _option("--damping contact_damping", "Of each contact, for --table, as '20 N s/m'."),
+    _option("--cage-angle", "Angles of the cage for --table, as '0..40 deg, 5 steps'. [default: means]"),
+    _option("--load-direction", "Of the radial load from x towards y, for --table, as '-90 deg'."),
+    _option(
+        "--sheet",
+        "Write its data sheet, .html: geometry, stiffness over load, tones; of the folder of a run in "
         "place of NAME also its bands by part.",
+        "FILE",
+        type=PATH,
     ),
-    click.Option(
-        ["--limits"],
-        metavar="VELOCITIES",
-        help="Largest rms radial velocities in the bands of ISO 15242, as '50 um/s, 30 um/s, none': list how "
+    _option(
+        "--limits",
+        "Largest rms radial velocities in the bands of ISO 15242, as '50 um/s, 30 um/s, none': list how "
         "large each wave of each part may be alone.",
+        "VELOCITIES",
     ),
-    click.Option(["--outer-mass"], help="Of the free outer ring, for --limits, as '60 g'."),
-    click.Option(["--list", "listed"], is_flag=True, help="List all NAMEs, and where they are printed."),
+    _option("--outer-mass", "Of the free outer ring, for --limits, as '60 g'."),
+    _flag("--list listed", "List all NAMEs, and where they are printed."),
 ]
 """What a bearing carries, and where its signal is."""
 CREEP = [
-    click.Option(
-        ["--direction"],
+    _option(
+        "--direction",
+        "Creepage that grows; spin makes a lateral force. [default: longitudinal]",
         type=click.Choice(["longitudinal", "lateral", "spin"]),
-        help="Creepage that grows; spin makes a lateral force. [default: longitudinal]",
     ),
-    click.Option(["--friction"], type=float, help="Coefficient of friction. [default: the case's; 0.3]"),
-    click.Option(["--points"], type=int, help="Points up to full slip, or states. [default: 16; 6 states]"),
-    click.Option(
-        ["--states"], is_flag=True, help="Instead: stiffness in stick, and creep as it begins, over load."
-    ),
-    click.Option(["--table"], type=PATH, help="Write it to a file, CSV."),
+    _option("--friction", "Coefficient of friction. [default: the case's; 0.3]", type=float),
+    _option("--points", "Points up to full slip, or states. [default: 16; 6 states]", type=int),
+    _flag("--states", "Instead: stiffness in stick, and creep as it begins, over load."),
+    _option("--table", "Write it to a file, CSV.", type=PATH),
 ]
 STUDY = [
-    click.Option(
-        ["--vary"],
-        multiple=True,
-        metavar="KEY=VALUES",
-        help="STUDY is a case: a key and its values, as 'speed = 80, 200 km/h', or a range, as "
+    _option(
+        "--vary",
+        "STUDY is a case: a key and its values, as 'speed = 80, 200 km/h', or a range, as "
         "'80..300 km/h, 6 steps', '60..1900 MN/m, 6 ratios', '1..20'. May be repeated.",
-    ),
-    click.Option(
-        ["--draw"],
+        "KEY=VALUES",
         multiple=True,
-        metavar="KEY=SPAN",
-        help="A key of which each member gets a value by chance: '50..500 N', '0.2..3 mm, ratios', one of a "
+    ),
+    _option(
+        "--draw",
+        "A key of which each member gets a value by chance: '50..500 N', '0.2..3 mm, ratios', one of a "
         "list, or a speed that wanders in the record, '1200..1800 1/min ± 0.5 %'. May be repeated.",
-    ),
-    click.Option(
-        ["--show"],
+        "KEY=SPAN",
         multiple=True,
-        metavar="NAMES",
-        help="Columns of the table and quantities of the figures, as in the headings of study.csv, with "
-        "commas. May be repeated. [default: the usual ones]",
     ),
-    click.Option(["--workers"], type=int, help="Processes of this machine. [default: one per processor]"),
-    click.Option(["--scheduler"], metavar="ADDRESS", help="Compute on the Dask cluster of this scheduler."),
+    _option(
+        "--show",
+        "Columns of the table and quantities of the figures, as in the headings of study.csv, with "
+        "commas. May be repeated. [default: the usual ones]",
+        "NAMES",
+        multiple=True,
+    ),
+    _option("--workers", "Processes of this machine. [default: one per processor]", type=int),
+    _option("--scheduler", "Compute on the Dask cluster of this scheduler.", "ADDRESS"),
 ]
+SIGNALS = [
+    _option("--signals", "Of ball bearings: write the acceleration of each, and labels.csv.", "FOLDER"),
+    _option(
+        "--format",
+        "Of these signals: nc, npy, wav, uff, or parquet, which bearing-datasets opens. [default: nc]",
+        "FORMAT",
+    ),
+    _option(
+        "--path",
+        "Impulse response of a path to the sensor: .npy, .wav or table; or drawn: '1..6 kHz, 3 resonances'.",
+        "PATH",
+    ),
+    _option("--path-rate", "Its sampling rate, as '48 kHz'.", "FREQUENCY"),
+    _option(
+        "--noise", "Noise: '20 dB' below the signal, an rms, '0.5 m/s^2', or drawn: '0..30 dB'.", "LEVEL"
+    ),
+]
+"""What a study writes of each bearing, and what lies between it and the record."""
 FIT = [
-    click.Option(
-        ["--to", "measured"],
+    _option(
+        "--to measured",
+        "Table of what was measured; more may follow. [default: what the case names]",
+        "FILE",
         type=PATH,
         multiple=True,
-        metavar="FILE",
-        help="Table of what was measured; more may follow. [default: what the case names]",
     ),
-    click.Option(
-        ["--free"],
-        multiple=True,
-        metavar="KEY",
-        help="A key that may change, or 'KEY = 100..2000 MN/m'. May be repeated. "
+    _option(
+        "--free",
+        "A key that may change, or 'KEY = 100..2000 MN/m'. May be repeated. "
         "[default: those that decide most]",
-    ),
-    click.Option(
-        ["--where"],
+        "KEY",
         multiple=True,
-        metavar="COLUMN=VALUE",
-        help="Of a table with a measurement in each line those where a column holds this. May be repeated.",
     ),
-    click.Option(["--as", "what"], metavar="QUANTITY", help="What files hold, where no heading tells it."),
-    click.Option(
-        ["--starts"],
-        type=WholeNumber(1, 100),
-        help="Places from which is searched. [default: 8, of runs 1]",
+    _option(
+        "--where",
+        "Of a table with a measurement in each line those where a column holds this. May be repeated.",
+        "COLUMN=VALUE",
+        multiple=True,
     ),
+    _option("--as what", "What files hold, where no heading tells it.", "QUANTITY"),
+    _option("--starts", "Places from which is searched. [default: 8, of runs 1]", type=WholeNumber(1, 100)),
 ]
 WRITTEN = [
-    click.Option(
-        ["--format"],
+    _option(
+        "--format",
+        "One universal file (dataset 58), or a WAV file for each signal.",
         type=click.Choice(["uff", "wav"]),
         default="uff",
         show_default=True,
-        help="One universal file (dataset 58), or a WAV file for each signal.",
     ),
-    click.Option(
-        ["--what"],
-        metavar="NAME",
-        help="One variable of the run, as contact_force. [default: all but displacements]",
-    ),
+    _option("--what", "One variable of the run, as contact_force. [default: all but displacements]", "NAME"),
 ]
 LISTEN = [
-    click.Option(
-        ["--what"],
-        metavar="NAME",
-        help="Variable of 'rolling' in the run, or pass_by_pressure, 7.5 m from a track. "
+    _option(
+        "--what",
+        "Variable of 'rolling' in the run, or pass_by_pressure, 7.5 m from a track. "
         "[default: acceleration, else velocity]",
+        "NAME",
     ),
-    click.Option(
-        ["--matched"], is_flag=True, help="Make all as loud as each other. [default: louder laws are louder]"
-    ),
+    _flag("--matched", "Make all as loud as each other. [default: louder laws are louder]"),
 ]

@@ -78,12 +78,13 @@ def run(case: Path, directory: Path | None, **choices: bool) -> Document:
 
 
 @_compute(
-    "Compute a case for every combination of values of some keys.", params=commands.STUDY, long_work=True
+    "Compute a case for every combination of values of some keys.",
+    params=[*commands.STUDY, *commands.SIGNALS],
+    long_work=True,
 )
 @click.argument("study", type=PATH)
 @commands.what_helps
 @commands.run_folder
-@commands.signals
 @commands.overwrite("another study")
 @commands.device
 def study(
