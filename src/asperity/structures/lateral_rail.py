@@ -256,8 +256,7 @@ class LateralTrack(LateralParameters):
         larger = np.where(bends, lateral, twist)
         one = np.ones_like(q)
         ratio = cross / larger
-        k = np.sqrt(q)
-        k = np.where(k.imag > 0.0, -k, k)
+        k = periodic_rail.decaying(q)
         shapes = np.stack([np.where(bends, one, ratio), np.where(bends, ratio, one)])
         return FreeWaves(k, shapes, -0.5j * larger / (k * slope))
 

@@ -345,10 +345,15 @@ def _with_residual(poles: Complex, frequency: Array) -> Complex:
     return np.concatenate([poles[near], residual * (1j * damped - RESIDUAL_DAMPING)])
 
 
+def _of_poles(poles: Complex) -> tuple[Array, Array]:
+    """Natural frequencies, Hz, and damping ratios of poles, rad/s."""
+    size = np.abs(poles)
+    return size / (2.0 * np.pi), -poles.real / size
+
+
 def _modal_masses(frequency: Array, flexible: Complex, weights: Array, poles: Complex) -> tuple[Modes, float]:
     """Modes of given poles by non-negative least squares, and the weighted error that they leave."""
-    natural = np.abs(poles) / (2.0 * np.pi)
-    ratio = -poles.real / np.abs(poles)
+    natural, ratio = _of_poles(poles)
     matrix = _stacked(weights[:, None] * modal_answers(frequency, natural, ratio))
     right = _stacked(weights * flexible)
     size = np.linalg.norm(matrix, axis=0)
@@ -383,8 +388,7 @@ def _mode_shapes(
     frequency: Array, flexible: Complex, weights: Array, driven: NDArray[np.intp], poles: Complex
 ) -> tuple[Modes, float]:
     """Modes of given poles with real shapes, and the weighted error that they leave."""
-    natural = np.abs(poles) / (2.0 * np.pi)
-    ratio = -poles.real / np.abs(poles)
+    natural, ratio = _of_poles(poles)
     answers = modal_answers(frequency, natural, ratio)
     scale = np.linalg.norm(answers, axis=0)
     answers = answers / scale

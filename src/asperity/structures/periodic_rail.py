@@ -30,43 +30,31 @@ class Rail:
         rail is free, or lies on a foundation s (f,), N/m^2, whose dynamic stiffness takes from its inertia:
         m' omega^2 - s stands for m' omega^2, as in EI k^4 + s - m' omega^2 = 0 of Euler-Bernoulli.
         """
-        if foundation is not None:
-            return self._bedded(omega, foundation)
-        relative = self.losses.at(omega)
         mass = self.mass_per_length
-        bending = self.bending_stiffness * relative
-        if self.shear_stiffness is None or self.rotary_inertia is None:
-            k = np.sqrt(omega) * (mass / bending) ** 0.25
-            scale = 1.0 / (4.0 * bending * k**3)
-            return np.stack([k, -1j * k]), np.stack([-1j * scale, -scale])
-        shear = self.shear_stiffness * relative
-        inertia = self.rotary_inertia
-        difference = inertia - mass * bending / shear
-        root = omega * np.sqrt(omega**2 * difference**2 + 4.0 * bending * mass)
-        first = omega**2 * (inertia + mass * bending / shear) + root
-        product = -mass * omega**2 * (1.0 - inertia * omega**2 / shear)  # of the roots, times EI
-        squares = np.stack([first / (2.0 * bending), 2.0 * product / first])
-        k = np.sqrt(squares)
-        k = np.where(k.imag > 0.0, -k, k)
-        rotation = (bending * squares + shear - inertia * omega**2) / shear
-        return k, -1j * rotation / (2.0 * k * bending * (squares - squares[::-1]))
-
-    def _bedded(self, omega: Complex, foundation: Complex) -> tuple[Complex, Complex]:
         relative = self.losses.at(omega)
         bending = self.bending_stiffness * relative
-        held = foundation - self.mass_per_length * omega**2
+        free = foundation is None
+        held = -mass * omega**2 if foundation is None else foundation - mass * omega**2
         if self.shear_stiffness is None or self.rotary_inertia is None:
-            k = np.exp(-0.25j * np.pi) * (held / bending) ** 0.25
+            if free:
+                k = np.sqrt(omega) * (mass / bending) ** 0.25
+            else:
+                k = np.exp(-0.25j * np.pi) * (held / bending) ** 0.25
             scale = 1.0 / (4.0 * bending * k**3)
             return np.stack([k, -1j * k]), np.stack([-1j * scale, -scale])
         shear = self.shear_stiffness * relative
         inertia = self.rotary_inertia * omega**2
-        middle = inertia - held * bending / shear
-        root = np.sqrt((inertia + held * bending / shear) ** 2 - 4.0 * bending * held)
-        first = middle + np.where(np.real(root * np.conj(middle)) < 0.0, -root, root)
-        squares = np.stack([first / (2.0 * bending), 2.0 * held * (1.0 - inertia / shear) / first])
-        k = np.sqrt(squares)
-        k = np.where(k.imag > 0.0, -k, k)
+        if free:
+            difference = self.rotary_inertia - mass * bending / shear
+            root = omega * np.sqrt(omega**2 * difference**2 + 4.0 * bending * mass)
+            first = omega**2 * (self.rotary_inertia + mass * bending / shear) + root
+        else:
+            middle = inertia - held * bending / shear
+            root = np.sqrt((inertia + held * bending / shear) ** 2 - 4.0 * bending * held)
+            first = middle + np.where(np.real(root * np.conj(middle)) < 0.0, -root, root)
+        product = held * (1.0 - inertia / shear)  # of the roots, times EI
+        squares = np.stack([first / (2.0 * bending), 2.0 * product / first])
+        k = decaying(squares)
         rotation = (bending * squares + shear - inertia) / shear
         return k, -1j * rotation / (2.0 * k * bending * (squares - squares[::-1]))
 
@@ -239,6 +227,12 @@ def periodic_waves(
     coefficients = -2.0 / (slope * (c - c[::-1]) * (multipliers - 1.0 / multipliers))
     weights = 1j * amplitudes[:, None] * (cosine[::-1, None] - c)
     return PeriodicWaves(multipliers, coefficients, wavenumbers, weights, spacing)
+
+
+def decaying(square: Complex) -> Complex:
+    """Wavenumbers by their squares, of waves that decay away from where they start."""
+    k = np.sqrt(square)
+    return np.where(k.imag > 0.0, -k, k)
 
 
 def refuse_decay(exponent: Array) -> None:

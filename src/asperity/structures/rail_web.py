@@ -7,6 +7,7 @@ import numpy as np
 
 from asperity.arguments import Array, Complex, require
 from asperity.structures.lateral_parameters import DENSITY, YOUNG, LateralParameters
+from asperity.structures.periodic_rail import decaying
 from asperity.written_numbers import rounded
 
 POISSON = 0.3
@@ -251,7 +252,6 @@ def webbed_waves(
     q, whole = np.linalg.eig(-np.linalg.solve(linear, constant))
     derived = slope[:, None] + 2.0 * q[..., None, None] * curved[:, None]
     scale = np.einsum("fai,fiab,fbi->fi", whole, derived, whole)
-    k = np.sqrt(q)
-    k = np.where(k.imag > 0.0, -k, k)
+    k = decaying(q)
     shapes = np.moveaxis(whole[:, :MOTIONS], 0, -1)
     return k.T, shapes, (-0.5j / (k * scale)).T
