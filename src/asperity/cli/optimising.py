@@ -15,11 +15,13 @@ from asperity.cli.running import warn, warnings_of
 from asperity.optimising.definition import load_aim
 from asperity.optimising.kinds import optimisation_of, searched
 from asperity.progress import progress_bar
+from asperity.reporting import page
 from asperity.results import save
 from asperity.scenes.report import PAGE as REPORT
 from asperity.scenes.report import write_page
 from asperity.terminal import say, say_files
 from asperity.text_files import write_csv
+from asperity.written_numbers import capital
 
 FILES = {
     "case": "case.toml",
@@ -30,6 +32,9 @@ FILES = {
     "after": "after/run.nc",
 }
 
+WRITTEN = {"texture": "texture", "table": "bands"}
+"""Tables to which the page has links, and their words."""
+
 
 @dataclass(frozen=True, eq=False)
 class ToldOptimisation:
@@ -37,7 +42,8 @@ class ToldOptimisation:
 
     document: dict[str, Any]  # for programs; its columns head the table of bands
     rows: Sequence[Sequence[Any]]  # of that table
-    page: str
+    title: str
+    blocks: Sequence[page.Block]  # of the page
     # headings and rows of further tables, by their names among the `FILES`
     tables: Mapping[str, tuple[Sequence[str], Sequence[Sequence[Any]]]] = field(default_factory=dict)
 
@@ -57,7 +63,7 @@ def run_optimisation(
         refuse_other_case("texture", asked, written["case"], "optimisation")
     with files.alone_in(directory), progress_bar() as progress:
         found = searched(case, aim, progress)
-        told: ToldOptimisation = function_named(optimisation_of(case).told_by)(found, report=report)
+        told: ToldOptimisation = function_named(optimisation_of(case).told_by)(found)
         with files.together(directory, last=FILES["case"]) as new:
             _written(found, told, new, report=report)
             keys = any_case.in_toml(found.case, in_memory=lambda *_: FILES["texture"])
@@ -86,4 +92,9 @@ def _written(found: Any, told: ToldOptimisation, directory: Path, *, report: boo
     tables = {**told.tables, "table": (told.document["columns"], told.rows)}
     for what, (heading, rows) in tables.items():
         write_csv(directory / FILES[what], heading, rows)
-    files.write_bytes(directory / FILES["page"], told.page.encode())
+    links = {f"{words} (CSV)": FILES[what] for what, words in WRITTEN.items() if what in tables}
+    links["case"] = FILES["case"]
+    if report:
+        links |= {f"report {what}": f"{what}/{REPORT}" for what in ("before", "after")}
+    text = page.figures_page(told.title, capital(found.sentence), told.blocks, links)
+    files.write_bytes(directory / FILES["page"], text.encode())

@@ -4,15 +4,13 @@ from typing import Any
 
 import numpy as np
 
-from asperity.cli.optimising import FILES, ToldOptimisation
+from asperity.cli.optimising import ToldOptimisation
 from asperity.optimising.bearing import JUDGED, OptimisedBearing
-from asperity.reporting import chart, page, panels
+from asperity.reporting import chart, panels
 from asperity.reporting.chart import Axis, Drawn, Line, Panel
 from asperity.reporting.figure import PageFigure
 from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
 from asperity.scenarios.prepared_bearing import ON
-from asperity.scenes.report import PAGE as REPORT
-from asperity.written_numbers import capital
 
 LOOKS = {"inner_raceway": chart.VERMILLION, "outer_raceway": chart.BLUE, "balls": chart.GREEN}
 """Colours of the parts."""
@@ -27,9 +25,11 @@ HEADS = (
 )
 
 
-def told_bearing(found: OptimisedBearing, *, report: bool) -> ToldOptimisation:
-    """What is said of waves that were found; `report` says whether the runs have pages."""
-    return ToldOptimisation(_document(found), _rows(found), _page(found, report=report))
+def told_bearing(found: OptimisedBearing) -> ToldOptimisation:
+    """What is said of waves that were found: on the page velocities before and after, and the waves."""
+    figure = PageFigure.of("bands", "Waves of the parts", _waves(found))
+    blocks = (_velocities(found), figure, _bands(found))
+    return ToldOptimisation(_document(found), _rows(found), "Optimised bearing", blocks)
 
 
 def _rows(found: OptimisedBearing) -> list[list[Any]]:
@@ -60,16 +60,6 @@ def _document(found: OptimisedBearing) -> dict[str, Any]:
         "price": found.price,
         "columns": list(HEADS),
     }
-
-
-def _page(found: OptimisedBearing, *, report: bool) -> str:
-    """The page: velocities before and after, and the waves of each part."""
-    figure = PageFigure.of("bands", "Waves of the parts", _waves(found))
-    links = {"bands (CSV)": FILES["table"], "case": FILES["case"]}
-    if report:
-        links |= {f"report {what}": f"{what}/{REPORT}" for what in ("before", "after")}
-    blocks: list[page.Block] = [_velocities(found), figure, _bands(found)]
-    return page.figures_page("Optimised bearing", capital(found.sentence), blocks, links)
 
 
 def _velocities(found: OptimisedBearing) -> ReportTable:

@@ -8,23 +8,27 @@ from asperity.arguments import Array
 from asperity.cli.optimising import FILES, ToldOptimisation
 from asperity.laws import spec_of
 from asperity.optimising.running import Optimised
-from asperity.reporting import data, page, study_figures
+from asperity.reporting import data, study_figures
 from asperity.reporting.figure import PageFigure
 from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
-from asperity.scenes.report import PAGE as REPORT
 from asperity.written_numbers import capital
 
 TEXTURE = "wavelength (m)", "level (dB re 1 um)"
 """Heading of the file of levels."""
 
 
-def told_texture(found: Optimised, *, report: bool) -> ToldOptimisation:
-    """What is said of a texture that was found; `report` says whether the runs have pages."""
+def told_texture(found: Optimised) -> ToldOptimisation:
+    """What is said of a texture that was found: on the page levels before and after, and the bands."""
     columns = _columns(found)
     rows = np.stack(list(columns.values()), axis=1).tolist()
     texture = np.stack([found.after.wavelength, found.after.levels], axis=1).tolist()
-    shown = _page(found, columns, report=report)
-    return ToldOptimisation(_document(found), rows, shown, {"texture": (TEXTURE, texture)})
+    return ToldOptimisation(
+        _document(found),
+        rows,
+        "Optimised texture",
+        (_levels_table(found), _figure(found, columns)),
+        {"texture": (TEXTURE, texture)},
+    )
 
 
 def _document(found: Optimised) -> dict[str, Any]:
@@ -57,18 +61,12 @@ def _columns(found: Optimised) -> dict[str, Array]:
     return columns
 
 
-def _page(found: Optimised, columns: dict[str, Array], *, report: bool) -> str:
+def _figure(found: Optimised, columns: dict[str, Array]) -> PageFigure:
+    """Levels of the texture before and after, and of the response, by law."""
     laws = data.read_entries(spec_of(law).entry() for law in found.changes)
     colours = {name: law.colour for name, law in laws.items()}
     parts = study_figures.optimised_figure(columns, found.measure.meaning, found.measure.units, colours)
-    figure = PageFigure.of("bands", "Texture and response in bands", parts, FILES["table"], columns)
-    offered = {"texture (CSV)": "texture", "case": "case"}
-    links = {words: FILES[what] for words, what in offered.items()}
-    if report:
-        links |= {f"report {what}": f"{what}/{REPORT}" for what in ("before", "after")}
-    return page.figures_page(
-        "Optimised texture", capital(found.sentence), [_levels_table(found), figure], links
-    )
+    return PageFigure.of("bands", "Texture and response in bands", parts, FILES["table"], columns)
 
 
 def _levels_table(found: Optimised) -> ReportTable:

@@ -14,7 +14,7 @@ class Optimisation(NamedTuple):
 
     aim: type[Section]
     find: Callable[..., Any]  # of the case, the aim and progress
-    told_by: str  # function (what was found, report=…), by module and name: its tables and its page
+    told_by: str  # function (what was found), by module and name: its tables and its page
 
 
 def optimisation_of(case: AnyCase) -> Optimisation:
