@@ -28,6 +28,8 @@ FORCE_TOLERANCE = 1e-10  # of the force plus the load, at the end of each step
 SWEEPS = 200
 SETTLED = 4.0 * FORCE_TOLERANCE
 """Change of a force over a sweep, of itself plus the load, that counts as none."""
+NEAR = 0.1
+"""Share of a force by which it may differ from its guess where one step of Newton's is enough at first."""
 MISSED, FOUND, AS_GUESSED = range(3)
 """How the force of one contact was found, with the others held."""
 OVER_DAMPING, BODY_DAMPING, CONTACT_DAMPING, THROUGHPUT, CONTACT_WORK, SLOPE_WORK = range(6)
@@ -73,7 +75,7 @@ class Motion(NamedTuple):
     ahead: NDArray  # (m,), displacement at the end of the step, as far as its forces are known
     core: NDArray  # (b, 2 d), coordinates and rates
     core_ahead: NDArray  # (b, 2 d), at the end of the step, as far as its forces are known
-    force: NDArray  # (2, n), N, now and one step ago
+    force: NDArray  # (4, n), N, now and up to three steps ago
     elastic: NDArray  # (n,), the part of the force that is not the damper's, N
     approach: NDArray  # (2, n), as the laws see it, m, now and one step ago
     rail: NDArray  # (p, 2 q), states of the poles of a rail's channels, m
@@ -102,13 +104,14 @@ class Histories(NamedTuple):
 
 
 @compiled(**INNER)
-def solve_law(evaluate, law, film, step, free, load, guess, damping, in_flight, relative):  # type: ignore[no-untyped-def]
+def solve_law(evaluate, law, film, step, free, load, guess, damping, in_flight, relative, again):  # type: ignore[no-untyped-def]
     """Contact force at the end of a step, N, its elastic part, evaluations of the law, how it was found.
 
     ``evaluate(law, step, approach)`` gives elastic force and stiffness of bodies that a film keeps
     apart, `damping`, N s/m, and `in_flight` are of `with_damping`. `free` is from `free_of`, `load` the scale
     of the force and `guess` the force expected, N; the force is exact to `relative` of itself plus the load.
-    What is looked for is the approach of the bodies.
+    What is looked for is the approach of the bodies. A force that will be looked at `again` beside those of
+    other contacts is one step of Newton's from a guess that was near.
     """
     free_approach, rate, compliance, rate_compliance = free
     low = -np.inf
@@ -119,16 +122,18 @@ def solve_law(evaluate, law, film, step, free, load, guess, damping, in_flight, 
         approach += film_under(film, guess - damped)[0]
     elastic = apart = 0.0
     for iteration in range(ITERATIONS):
-        elastic, stiffness = evaluate(law, step, approach)
+        elastic, firm = evaluate(law, step, approach)
         apart, thinner = film_under(film, elastic)
-        slope = 1.0 - thinner * stiffness
-        force, stiffness = with_damping(elastic, stiffness, rate, rate_compliance, damping, in_flight)
+        force, stiffness = with_damping(elastic, firm, rate, rate_compliance, damping, in_flight)
         residual = approach - apart - free_approach + compliance * force
         # the last term is what rounding leaves of the approach
         limit = relative * compliance * (abs(force) + load) + 1e-15 * abs(free_approach)
         if abs(residual) <= limit:
             return force, elastic, iteration + 1, FOUND if iteration else AS_GUESSED
-        slope += compliance * stiffness
+        slope = 1.0 - thinner * firm + compliance * stiffness
+        if again and iteration == 0 and abs(residual) <= NEAR * compliance * force:
+            closer = -residual / max(slope, 1.0)
+            return force + stiffness * closer, elastic + firm * closer, 1, FOUND
         low, high, approach = refine(low, high, approach, residual, slope, iteration)
         if damping > 0.0 and abs(high - low) <= limit:
             # a damper engages with a jump: the force lies inside it
@@ -137,7 +142,7 @@ def solve_law(evaluate, law, film, step, free, load, guess, damping, in_flight, 
 
 
 @compiled(**INNER)
-def solve_prepared(laws, k, step, free, load, guess):  # type: ignore[no-untyped-def]
+def solve_prepared(laws, k, step, free, load, guess, again):  # type: ignore[no-untyped-def]
     """As `solve_law`, by the law of contact k, of those that `asperity.rolling.course.Course` lays out."""
     stack, counts = laws
     states, knots = counts[0, k], counts[1, k]
@@ -147,9 +152,8 @@ def solve_prepared(laws, k, step, free, load, guess):  # type: ignore[no-untyped
         stack.bilateral[k], stack.datum[k], stack.damping[k], stack.damped_in_flight[k], stack.upper[k],
         SeriesFilm(stack.film[k, 0], stack.film[k, 1], stack.film[k, 2]),
     )  # fmt: skip
-    return solve_law(
-        evaluate, law, law.film, step, free, load, guess, law.damping, law.damped_in_flight, FORCE_TOLERANCE
-    )
+    damper = law.damping, law.damped_in_flight
+    return solve_law(evaluate, law, law.film, step, free, load, guess, *damper, FORCE_TOLERANCE, again)
 
 
 @compiled(**INNER, **REASSOCIATE)
@@ -184,7 +188,8 @@ def begin_step(system, motion, shapes):  # type: ignore[no-untyped-def]
         for j in range(shapes.shape[1]):
             compliance += shapes[k, j] * shapes[k, j] * a[3, j]
         motion.compliance[k] = compliance
-        motion.trial[k] = 2.0 * motion.force[0, k] - motion.force[1, k]
+        last = motion.force[:, k]  # the next one lies on a cubic through them
+        motion.trial[k] = 4.0 * (last[0] + last[2]) - 6.0 * last[1] - last[3]
     for k in range(motion.trial.shape[0]):
         press(system, motion, shapes, k, motion.trial[k])
 
@@ -271,7 +276,7 @@ def solve_contacts(solve, system, motion, laws, row, shapes):  # type: ignore[no
         settled = True
         for k in range(motion.trial.shape[0]):
             free = free_of(system, motion, shapes, k)
-            found = solve(laws, k, row, free, system.loads[k], motion.trial[k])
+            found = solve(laws, k, row, free, system.loads[k], motion.trial[k], system.coupled)
             settled = take(system, motion, shapes, k, sweep, found) and settled
         if settled or not system.coupled:
             return settled
@@ -294,7 +299,8 @@ def end_step(system, motion, record, step, shapes, rates):  # type: ignore[no-un
             motion.push[j] = system.constant[j]
         for k in range(motion.trial.shape[0]):
             force = motion.trial[k]
-            motion.force[1, k] = motion.force[0, k]
+            for i in range(motion.force.shape[0] - 1, 0, -1):
+                motion.force[i, k] = motion.force[i - 1, k]
             motion.force[0, k] = force
             add(motion.push, 0, shapes[k], force, system.ones)
             add(motion.push, first_mode(system, shapes, k), system.shapes[k], force, system.ones)

@@ -292,7 +292,7 @@ def at_zero(system: System) -> Motion:
     shapes: dict[str, Any] = dict.fromkeys(("displacement", "velocity", "push", "ahead"), m)
     shapes |= dict.fromkeys(("elastic", "rail_ahead", "trial", "compliance", "rate", "climb"), n)
     shapes |= dict.fromkeys(("core", "core_ahead"), system.core_pressed.shape)
-    shapes |= {"force": (2, n), "approach": (2, n), "power": POWERS, "ledger": 6, "rail_now": p}
+    shapes |= {"force": (4, n), "approach": (2, n), "power": POWERS, "ledger": 6, "rail_now": p}
     shapes |= {"rail": (p, system.channels.decay.shape[1])}
     shapes |= {"ring": (n, system.channels.scattered.shape[2] if p else 0)}
     arrays = {name: np.zeros(shape) for name, shape in shapes.items()}

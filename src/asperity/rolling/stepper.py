@@ -162,7 +162,9 @@ class Stepper:
         if not self.stepped:  # one kernel serves any number and mix
             self.laid = stacked(self.pieces)
 
-    def _solve(self, laws: Any, k: int, row: int, free: Free, load: float, guess: float) -> Found:
+    def _solve(
+        self, laws: Any, k: int, row: int, free: Free, load: float, guess: float, again: bool
+    ) -> Found:
         """As `asperity.kernels.stepping.solve_prepared`, by any law.
 
         One that settles with the bodies does without iteration, but where its damper engages or lets go.
@@ -171,12 +173,12 @@ class Stepper:
         damping = float(self.course.laws[k].damping)
         solve = stepping.solve_law.py_func
         if isinstance(law, Prepared):
-            damper = damping, law.damped_in_flight
-            return solve(evaluate, law, law.film, row, free, load, guess, *damper, stepping.FORCE_TOLERANCE)
+            how = damping, law.damped_in_flight, stepping.FORCE_TOLERANCE, again
+            return solve(evaluate, law, law.film, row, free, load, guess, *how)
         step = self.offset + row
         if settles(law) and (settled := _settled(law, step, free, damping)) is not None:
             return *settled, 1, stepping.FOUND
-        return solve(_evaluate, law, DRY, step, free, load, guess, damping, False, STEPPED_TOLERANCE)
+        return solve(_evaluate, law, DRY, step, free, load, guess, damping, False, STEPPED_TOLERANCE, False)
 
     def _ran_away(self) -> ComputationError:
         motion, course = self.motion, self.course

@@ -35,7 +35,7 @@ from asperity.structures.rail_poles import RailBetween, rail_at
 from asperity.structures.track import Track
 
 T = TypeVar("T")
-FORMAT = 2
+FORMAT = 3
 """Of a state of motion that is kept: raise it where one is laid out anew."""
 LOWEST_SWEPT = 20.0
 """Frequency from which on receptances of a track are laid out, Hz."""
