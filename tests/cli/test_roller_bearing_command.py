@@ -121,6 +121,43 @@ def test_a_taper_and_its_rib_are_told(tapered, tmp_path, stiffness, told):
     assert f"contact angle 14°, taper 4.2°, its rib {told}" in " ".join(said.split())
 
 
+def test_friction_on_a_rib_is_said_of_a_file_and_of_a_case(tmp_path):
+    """Torque by the closed form of the static solution; heat at a speed."""
+    text = TAPERED.replace('speed = "1800 1/min"', 'radial = "800 N"') + 'taper = "4.2 deg"\nfriction = 0.1\n'
+    (path := tmp_path / "own.toml").write_text(text + 'rib_height = "1 mm"\n')
+    angles = {"contact_angle": np.radians(14.0), "taper": np.radians(4.2), "rib_height": 1e-3}
+    of = RollerBearing(15, 7e-3, 10e-3, 45e-3, **angles)
+    found = of.loaded(800.0, 2000.0).rib_torque(0.1)
+    said = " ".join(call("bearing", str(path)).stdout.split())
+    assert (
+        f"Friction of rollers on the rib asks the rings for {1e3 * found.sum(axis=1).mean():.4g} N mm."
+        in said
+    )
+    told = json.loads(call("bearing", str(path), "--json").stdout)
+    assert told["balls"]["rib_torque"] == pytest.approx(found[0].tolist())
+    path.write_text(text)
+    refused = call("bearing", str(path), code=2).stderr
+    assert (
+        "friction: received 0.1; allowed: none without taper and rib_height: rollers slide on a rib"
+        in refused
+    )
+    bearing = {"contact_angle": "14 deg", "taper": "4.2 deg", "rib_height": "1 mm", "name": "NU205"}
+    case = {
+        "kind": "roller-bearing",
+        "radial": "800 N",
+        "axial": "600 N",
+        "friction": 0.1,
+        "bearing": bearing,
+    }
+    (path := tmp_path / "case.toml").write_text(as_case(case).to_toml())
+    of = RollerBearing.named("NU205", **angles)
+    torque = of.loaded(800.0, 600.0, speed=30.0).rib_torque(0.1).sum(axis=1).mean()
+    said = " ".join(call("bearing", str(path)).stdout.split())
+    assert f"{1e3 * torque:.4g} N mm, {60.0 * np.pi * torque:.4g} W of heat." in said
+    said = call(*LOADED).stdout
+    assert "Friction" not in said
+
+
 def test_a_table_has_stiffness_and_damping_of_a_ring_held_against_tilt(tmp_path):
     path = tmp_path / "k.csv"
     options = ("--radial", "1 kN, 2 kN", "--damping", "20 N s/m", "--cage-angle", "0 deg")

@@ -311,6 +311,32 @@ def test_the_report_tells_what_the_rib_of_tapered_rollers_pushes():
     assert "rib pushes" not in ball_contacts_table(level).note
 
 
+RUBBING = {"axial": "1 kN", "friction": 0.1, "bearing": TAPER | {"rib_height": "1.2 mm"}}
+
+
+def test_ends_that_rub_on_the_rib_are_warm_by_what_drives_the_rings():
+    """2π f M of heat: at rest of each roller, in the run by the mean of all forces of the rib."""
+    quiet = {"outer_raceway": None, "duration": "12 ms"}
+    found = asperity.run(CASE | RUBBING | quiet, brief=True)
+    of = RollerBearing.named(
+        "NU205", contact_angle=np.radians(14.0), taper=np.radians(4.0), rib_height=1.2e-3
+    )
+    force = found["rolling/rib_force"].values.sum(axis=1).mean()
+    torque = found["bearing/rib_torque"].values
+    assert torque == pytest.approx(0.1 * of.rib_lever * force, rel=1e-5)
+    heat = found["bearing/rib_heat"].values
+    rests = as_case(CASE | RUBBING).static.rib_force
+    np.testing.assert_allclose(heat, 200.0 * np.pi * 0.1 * of.rib_lever * rests, rtol=1e-9)
+    assert heat.sum(axis=1).mean() == pytest.approx(200.0 * np.pi * torque[0], rel=2e-3)
+    told = (
+        f"asks the rings for {1e3 * torque[0]:.4g} N mm, and turns {heat.sum(axis=1).mean():.4g} W into heat"
+    )
+    assert told in ball_contacts_table(found).note
+    assert "friction_heat" not in found["bearing"]
+    still = as_case(CASE | RUBBING | {"centrifugal": False, "bearing": RUBBING["bearing"]})
+    assert still.static.speed == 0.0
+
+
 test_tilts_that_cannot_be_are_refused = refusals(
     ({"tilt": "0.2"}, 'tilt: received .0.2.; allowed: an angle, with its unit, as "30 deg"'),
     ({"tilt": "0.2 rad"}, "tilt: received 0.2 rad; allowed: -0.1 rad to 0.1 rad. Shafts tilt less"),
@@ -326,6 +352,12 @@ test_tilts_that_cannot_be_are_refused = refusals(
     ),
     ({"bearing": {"name": "NU205", "taper": "4 deg"}}, "bearing.contact_angle: received 0° of rollers that"),
     ({"bearing": {"name": "NU205", "rib_stiffness": "1 MN/m"}}, "bearing.rib_stiffness: "),
+    (
+        RUBBING | {"bearing": TAPER},
+        "friction: received 0.1; allowed: none without bearing.taper and bearing.rib_height: rollers slide",
+    ),
+    (RUBBING | {"creep": {"kinetic": 0.5}}, "creep.kinetic: received 0.5; allowed: none: rollers slide"),
+    ({"bearing": {"name": "NU205", "rib_height": "1 mm"}}, "bearing.rib_height: "),
     ({"tilt": "60 mrad"}, "radial: received half a width of .*Lower the load or the tilt"),
     of=lambda changes: as_case(CASE | changes),
     error=CaseError,

@@ -128,9 +128,9 @@ OF_OTHERS = {
     "ball-on-beam": {f"ball.{name}" for name in DRAWN} | {"numerics.poles"},
     "roller-bearing": {"axial", "friction", "wear_coefficient"},
 }
-"""No wheel is drawn that rolls over a beam, and no beam has poles; rollers slide nowhere."""
+"""No wheel is drawn that rolls over a beam, and no beam has poles; cylindrical rollers slide nowhere."""
 OF_A_FILE = {"structure.nodes", "structure.mass", "structure.inertia", "track.pad_preload"}
-CARRIED_AXIALLY = {"bearing.taper", "bearing.rib_stiffness"}
+CARRIED_AXIALLY = {"bearing.taper", "bearing.rib_stiffness", "bearing.rib_height"}
 """Tapered rollers carry no radial load alone: they are tried where they run."""
 LONG_WORK = {"contact.samples"}
 """They are doubted once their textures are made, which takes long."""

@@ -320,7 +320,7 @@ test_what_no_roller_bearing_has_is_refused = refusals(
     ({"bearing": {"name": "NU205", "crowning": "circular", "crowning_drop": "1 mm"}}, "crowning_drop"),
     ({"bearing": {"name": "6205"}}, "bearing.name: received '6205'"),
     ({"axial": "10 N"}, "axial: received 10 N.*contact_angle is 0"),
-    ({"friction": 0.1}, "friction: received 0.1; allowed: none: rollers slide nowhere"),
+    ({"friction": 0.1}, "friction: received 0.1; allowed: none without bearing.taper and bearing.rib_height"),
     ({"wear_coefficient": 1e-8}, "wear_coefficient: received 1e-08; allowed: none: rollers slide nowhere"),
     ({"creep": {"kinetic": 0.5}}, "creep.kinetic: received 0.5; allowed: none: rollers slide nowhere"),
     ({"fault": {"on": "cage"}}, 'fault.on: received .cage.; allowed: "outer", "inner", "roller"'),

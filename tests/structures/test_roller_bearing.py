@@ -269,20 +269,68 @@ def test_fast_tapered_rollers_and_their_rings_are_in_balance():
     np.testing.assert_allclose(-on_outer[:, 1].sum(), 600.0, rtol=1e-9)
 
 
+def cones(angle, half, **others):
+    """A bearing whose raceways and rollers are cones with one apex."""
+    diameter = 2.0 * 20e-3 * np.tan(half) / np.sin(angle - half)
+    return RollerBearing(15, diameter, 8e-3, 40e-3, contact_angle=angle, taper=2.0 * half, **others)
+
+
 def test_tapered_rollers_turn_as_cones_with_one_apex():
     """Raceways of half angles α − 2β and α: the cage turns by sin(α − 2β)/(sin(α − 2β) + sin α)."""
     angle, half = 0.3, 0.04
-    diameter = 40e-3 * np.tan(half) / np.sin(angle - half)
-    of = RollerBearing(
-        rollers=20, roller_diameter=diameter, roller_length=8e-3, pitch_diameter=40e-3,
-        contact_angle=angle, taper=2.0 * half,
-    )  # fmt: skip
+    of = cones(angle, half)
     inner, outer = np.sin([angle - 2.0 * half, angle])
     turning = of.kinematics(1.0)
     assert turning.cage == pytest.approx(inner / (inner + outer), rel=1e-12)
     assert turning.spin == pytest.approx(inner * outer / (inner + outer) / np.sin(half), rel=1e-12)
     assert np.divide(*of.raceway_radii) == pytest.approx(inner / outer, rel=1e-12)
-    assert of.tones()["outer"].order == pytest.approx(20.0 * turning.cage, rel=1e-12)
+    assert of.tones()["outer"].order == pytest.approx(15.0 * turning.cage, rel=1e-12)
+
+
+def sides(angle, half):
+    """Unit vectors from the apex, along the axis and outwards: raceways, axis of a roller; and across it."""
+    inner, outer, axis, across = (
+        np.array([math.cos(at), math.sin(at), 0.0])
+        for at in (angle - 2.0 * half, angle, angle - half, angle - half + 0.5 * math.pi)
+    )
+    return inner, outer, axis, across
+
+
+@pytest.mark.parametrize("turning", ["inner", "outer"])
+@pytest.mark.parametrize(("angle", "half", "height"), [(0.3, 0.04, 0.7e-3), (0.5, 0.07, 1.2e-3)])
+def test_the_end_of_a_roller_slides_on_the_rib_as_cones_turn(turning, angle, half, height):
+    """Velocities of roller and ring, by vectors, at a place h above a raceway on which none slides."""
+    of = cones(angle, half, rib_height=height, turning=turning)
+    found = of.kinematics(30.0)
+    inner, outer, axis, across = sides(angle, half)
+    along = np.array([1.0, 0.0, 0.0])
+    rings = {"inner": found.inner, "outer": found.outer}
+    sense = 1.0 if turning == "outer" else -1.0
+    roller = 2.0 * np.pi * (found.cage * along + sense * found.spin * axis)
+    end = 70e-3
+    for ring, side in (("inner", inner), ("outer", outer)):
+        slides = np.cross(roller - 2.0 * np.pi * rings[ring] * along, end * side)
+        assert np.abs(slides).max() < 1e-12
+    slides = np.cross(roller - 2.0 * np.pi * found.inner * along, end * inner + height * across)
+    assert np.linalg.norm(slides) == pytest.approx(2.0 * np.pi * 30.0 * of.rib_lever, rel=1e-9)
+
+
+@pytest.mark.parametrize(("angle", "half", "height"), [(0.3, 0.04, 0.7e-3), (0.5, 0.07, 1.2e-3)])
+def test_friction_on_the_rib_asks_the_rings_for_what_balances_a_roller(angle, half, height):
+    """Moments about the apex: of the rib, and of what sticks along both raceways; μ Q h sin α/(2 sin β)."""
+    of = cones(angle, half, rib_height=height)
+    found = of.loaded(800.0, 700.0, speed=200.0, cage_angles=[0.1])
+    rubs = 0.08 * found.rib_force[0]
+    inner, outer, _, across = sides(angle, half)
+    # forces across the plane of roller and bearing, at p, on g_i and on g_o: p F + g_i a_i + g_o a_o = 0
+    place = 70e-3 * inner + height * across
+    on_inner, on_outer = np.linalg.solve(np.column_stack([inner, outer])[:2], -place[:2, None] * rubs)
+    asked = on_outer * outer[1]
+    np.testing.assert_allclose(on_inner * inner[1] + rubs * place[1], -asked, rtol=1e-9)
+    torque = found.rib_torque(0.08)[0]
+    np.testing.assert_allclose(torque, np.abs(asked), rtol=1e-9)
+    np.testing.assert_allclose(torque, rubs * height * math.sin(angle) / (2.0 * math.sin(half)), rtol=1e-9)
+    assert np.isnan(cones(angle, half).loaded(axial=700.0).rib_torque(0.08)).all()
 
 
 def test_an_axial_load_below_what_pushes_a_ring_away_is_refused():
@@ -328,6 +376,11 @@ test_geometries_that_do_not_close = refusals(
     ),
     ({"taper": 0.1, "contact_angle": 0.1}, "contact_angle: received 5.73° of rollers that taper"),
     ({"rib_stiffness": 1e8}, "rib_stiffness: received one of rollers that do not taper; allowed: none"),
+    ({"rib_height": 1e-3}, "rib_height: received one of rollers that do not taper; allowed: none"),
+    (
+        {"contact_angle": 0.3, "taper": 0.1, "rib_height": 4e-3},
+        "rib_height: received 4 mm; allowed: less than half a roller's 7.5 mm. It counts from the inner",
+    ),
     of=lambda changes: NU205.with_(**changes),
 )
 test_loads_that_cannot_be = refusals(

@@ -1,6 +1,6 @@
 """A bearing and what it carries, of balls or of rollers, as ``asperity bearing`` reads it."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from asperity.arguments import given_options
@@ -10,9 +10,15 @@ from asperity.case.bearing_sections import DAMPED, LOAD, LOADS, BearingGeometry
 from asperity.case.body import DAMPING
 from asperity.case.form import Section, section
 from asperity.case.lubricant import LubricantKeys, RollerLubricantKeys
-from asperity.case.roller_bearing import TILT, RollerBearingUnderLoad, RollerGeometry
+from asperity.case.roller_bearing import (
+    FRICTION,
+    TILT,
+    RollerBearingUnderLoad,
+    RollerGeometry,
+    rubbing_nowhere,
+)
 from asperity.case.speed import span_of
-from asperity.errors import OutOfRangeWarning
+from asperity.errors import InputError, OutOfRangeWarning
 from asperity.parameters import Origin, Quantity, key, optional
 from asperity.reference.bearings import LISTED, named_bearings
 from asperity.speeds import SpeedCourse, at_fastest
@@ -71,12 +77,17 @@ class RollerBearingKeys(LoadKeys, RollerGeometry):
     """A roller bearing and what it carries."""
 
     tilt: float = TILT
+    friction: float | None = FRICTION
     lubricant: RollerLubricantKeys = section(RollerLubricantKeys, "the oil: how thick its films are")
 
     @property
     def held(self) -> dict[str, Any]:
         """How the inner ring is held beside its load."""
         return {"tilt": self.tilt}
+
+    def problems(self) -> Iterator[InputError]:
+        """What a bearing lacks, or friction of one in which nothing slides."""
+        yield from list(super().problems()) or rubbing_nowhere(self.friction, self.bearing)
 
 
 def _read(keys: Mapping[str, Any], source: str) -> LoadKeys:
@@ -102,16 +113,20 @@ def _of_case(keys: dict[str, Any], source: str, options: Mapping[str, Any]) -> d
             f"The speed of {source} changes, {span} 1/min: what follows is that"
             f"{at_fastest(case.speed, '1/min', 60.0)[1:]}. Take --speed for another."
         )
-    carried = {name: f"{float(getattr(case, name))!r} {unit}" for name, unit in CARRIED.items()}
+    carried: dict[str, Any] = {
+        name: f"{float(getattr(case, name))!r} {unit}" for name, unit in CARRIED.items()
+    }
     carried["contact_damping"] = f"{0.5 * sum(case.dampings)!r} N s/m"
     carried |= {name: f"{value!r} rad" for name, value in case.held.items()}
+    if on_rollers and case.friction is not None:
+        carried["friction"] = case.friction
     return dict(keys.get("bearing", {})) | carried | {"lubricant": keys.get("lubricant", {})}
 
 
 def bearing_of_run(text: str, source: str) -> LoadKeys:
     """Bearing, load and speed of a run by the text of its case, whose files need no longer be there."""
     keys = toml.read_toml(text, "case", source)
-    names = "kind", "bearing", "lubricant", "tilt", "rotating_tilt", *CARRIED
+    names = "kind", "bearing", "lubricant", "tilt", "rotating_tilt", "friction", *CARRIED
     own = {name: keys[name] for name in names if name in keys}
     return _read(_of_case(own, source, {}), source)
 

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from asperity.case.any_case import LAW
 from asperity.case.ball_bearing import BearingUnderLoad
@@ -31,6 +31,10 @@ TILT = key(
     "tilt of the inner ring in the plane of the radial load",
     "-0.1 rad to 0.1 rad: shafts tilt less",
 )
+FRICTION: Any = replace(
+    BearingUnderLoad.keys["friction"],
+    meaning="coefficient of friction of tapered rollers on the rib, which bearing.rib_height goes with",
+)
 DIMENSIONS = keys_of(RollerBearing, otherwise="that of the named bearing")
 BY_SLICES = "areal"
 """The law of rollers: its force is that of all slices, on heights averaged under them."""
@@ -46,6 +50,13 @@ OF_CROWNING = {
     "straight middle of the crowning": "crowning_straight",
 }
 """Keys of what a crowning may be refused for."""
+
+
+def rubbing_nowhere(friction: float | None, of: RollerBearing, within: str = "") -> Iterator[InputError]:
+    """Friction of a bearing whose rollers touch no rib, keys of which stand within a section."""
+    if friction is not None and of.rib_height is None:
+        allowed = f"none without {within}taper and {within}rib_height: rollers slide on a rib alone"
+        yield InputError("friction", f"{friction:g}", allowed, "Give them, or leave it out.")
 
 
 class RollerGeometry(NamedBearing, parameters=DIMENSIONS):
@@ -117,6 +128,7 @@ class RollerBearingUnderLoad(BearingUnderLoad):
         "1 ns to 1 ms: bearings ring between",
     )
     centrifugal: bool = key(Flag(), True, "whether rollers press the outer ring as they go round")
+    friction: float | None = FRICTION
     bearing: RollerGeometry = section(  # type: ignore[assignment]
         RollerGeometry, "the bearing: named, or by its dimensions"
     )
@@ -171,14 +183,9 @@ class RollerBearingUnderLoad(BearingUnderLoad):
             remedy = "Its force on rollers is that of slices; the others are made for the ellipse of a ball."
             yield InputError("laws", ", ".join(others), f'"{BY_SLICES}"', remedy)
             return
-        sliding = {name: getattr(self, name) for name in ("friction", "wear_coefficient")}
-        sliding |= {f"creep.{name}": each for name, each in self.creep.given().items()}
-        for name, given in sliding.items():
-            if given is not None:
-                allowed = "none: rollers slide nowhere but at ribs, of which only the force is in it"
-                remedy = 'Leave it out; kind = "ball-bearing" has friction.'
-                yield InputError(name, f"{given:g}", allowed, remedy)
-                return
+        if sliding := next(self._problems_of_sliding(), None):
+            yield sliding
+            return
         if self.axial > 0.0 and self.bearing.bearing.contact_angle == 0.0:
             remedy = "Rollers slide along such raceways, and ribs are not in it. Give a contact_angle."
             allowed = "0 N where bearing.contact_angle is 0"
@@ -190,3 +197,13 @@ class RollerBearingUnderLoad(BearingUnderLoad):
             yield InputError(key, f"{rounded(self.held['tilt'], 4)} rad", allowed, "Is the unit right?")
             return
         yield from super().problems()
+
+    def _problems_of_sliding(self) -> Iterator[InputError]:
+        """Friction of what slides: the ends of tapered rollers on a rib, as high as it is told."""
+        sliding = {"wear_coefficient": self.wear_coefficient}
+        sliding |= {f"creep.{name}": each for name, each in self.creep.given().items()}
+        for name, given in sliding.items():
+            if given is not None:
+                allowed = "none: rollers slide nowhere but on a rib, with a friction that stays"
+                yield InputError(name, f"{given:g}", allowed, 'Leave it out; kind = "ball-bearing" has it.')
+        yield from rubbing_nowhere(self.friction, self.bearing.bearing, "bearing.")

@@ -193,6 +193,7 @@ def _carried(keys: LoadKeys, picture: Path | None) -> dict[str, Any]:
         heaviest = np.unravel_index(int(found.inner_load.argmax()), found.inner_load.shape)
         carrying = f"{rounded(1e3 * found.carrying_length[heaviest])} of {rounded(1e3 * of.roller_length)} mm"
         say(f"Of the roller that carries most {carrying} touch the inner ring; {_tilted(found)}.")
+        _say_rubbing(keys, found)
     elif isinstance(found, LoadedBearing) and of.arches:
         _say_flanks(found, turning)
     films = say_films(keys, found)
@@ -207,6 +208,8 @@ def _carried(keys: LoadKeys, picture: Path | None) -> dict[str, Any]:
         balls |= {name: getattr(found, name)[0] for name in FLANKS}
     if isinstance(found, LoadedRollers) and found.bearing.taper:
         balls["rib_force"] = found.rib_force[0]
+        if friction := getattr(keys, "friction", None):
+            balls["rib_torque"] = found.rib_torque(friction)[0]
     ring = {"displacement": found.displacement, "stiffness": found.stiffness, "imbalance": found.imbalance}
     return {"balls": balls, **ring, "films": films, "tones": tones}
 
@@ -223,6 +226,16 @@ def _tilted(found: LoadedRollers) -> str:
     if not found.bearing.taper:
         return told
     return f"{told}; the rib pushes with up to {rounded(float(found.rib_force.max()), 4)} N along a roller"
+
+
+def _say_rubbing(keys: LoadKeys, found: LoadedRollers) -> None:
+    """Say what friction on the rib asks of the rings, and the heat of it, where a file has friction."""
+    friction = getattr(keys, "friction", None)
+    if friction is None:
+        return
+    torque = float(found.rib_torque(friction).sum(axis=1).mean())
+    heat = f", {rounded(2.0 * math.pi * keys.speed * torque, 4)} W of heat" if keys.speed else ""
+    say(f"Friction of rollers on the rib asks the rings for {rounded(1e3 * torque, 4)} N mm{heat}.")
 
 
 def _say_flanks(found: LoadedBearing, turning: Kinematics) -> None:

@@ -26,7 +26,8 @@ def along_group(computed: ComputedBearing) -> Values:
     }
 
 
-def _has_rollers(computed: ComputedBearing) -> bool:
+def has_rollers(computed: ComputedBearing) -> bool:
+    """Whether rollers roll in it, not balls."""
     return isinstance(computed.case.static, LoadedRollers)
 
 
@@ -35,6 +36,6 @@ OBSERVER = Observer(
     DECLARED,
     along_group,
     needs=("bearing",),
-    asked_of=_has_rollers,
+    asked_of=has_rollers,
     sources=("G. Lundberg, Forsch. Ing.-Wes. 10 (1939) 201 (profiles of rollers).",),
 )

@@ -19,6 +19,7 @@ from asperity.reduction.traction import TractionStates, middle_of, traction_stat
 from asperity.scenarios.reducing import LIGHTEST_STATE
 from asperity.scenarios.scene import PreparedCase
 from asperity.scenes import compute, schema
+from asperity.scenes.along_rollers import has_rollers
 from asperity.scenes.computed_bearing import ComputedBearing
 from asperity.scenes.observer import DECLARED, Observer
 from asperity.scenes.sideways import Sideways
@@ -272,7 +273,7 @@ def _gyrating(computed: ComputedBearing) -> Iterator[Finding]:
 
 
 def _rubs(computed: ComputedBearing) -> bool:
-    return computed.case.friction is not None
+    return computed.case.friction is not None and not has_rollers(computed)
 
 
 OBSERVER = Observer(

@@ -74,6 +74,12 @@ GYRATION = _rubbed(
 FRICTION_TORQUE = _rubbed(
     "friction_torque(law)", "N m", "torque that friction of all contacts asks of the rings, mean over time"
 )
+RUBS_ON_RIB = "of a bearing of tapered rollers with friction"
+_on_rib = partial(Entry, "bearing", condition=RUBS_ON_RIB)
+RIB_HEAT = _on_rib("rib_heat(cage_angle, ball)", "W", "heat of friction of a roller on the rib")
+RIB_TORQUE = _on_rib(
+    "rib_torque(law)", "N m", "torque that friction on the rib asks of the rings, mean over time"
+)
 _worn = partial(Entry, "bearing", condition="of a ball bearing with a wear_coefficient")
 RACEWAY_ANGLE = _worn("raceway_angle", "rad", "place around a raceway, from the radial load")
 WEAR_RATE = _worn(
@@ -288,6 +294,7 @@ KEPT: dict[Entry, dict[str, int]] = {
     HEAVIEST_FILM: {},
     HEAVIEST_PARAMETER: {},
     FRICTION_TORQUE: {},
+    RIB_TORQUE: {},
     BAND_VELOCITY: {},
     BAND_ANDERONS: {},
     BAND_DEVIATION: {},

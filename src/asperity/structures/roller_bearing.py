@@ -38,6 +38,10 @@ CLEARANCE = 20e-6
 """Diametral clearance of the named bearings, m, chosen here."""
 STEEPEST_TILT = 0.1
 """Of a ring, rad, below which it is."""
+_LEFT_OUT = (
+    "no friction in the motion, and no rib but that of tapered rollers; while it turns rings are held at "
+    "their tilt, rollers at half of it; slices of a roller do not know of each other, nor of sharp ends"
+)
 _LENGTH = Quantity("m", above=0)
 
 
@@ -57,6 +61,8 @@ class RollerBearing(RollingBearing):
         Angle between opposite sides of a tapered roller, rad, by which the inner raceway is at a smaller one.
     rib_stiffness : float, optional
         Of the end of a tapered roller on the rib of the inner ring, N/m; rigid by default.
+    rib_height : float, optional
+        How far above the inner raceway the rib touches the end of a tapered roller, m, for its friction.
     clearance : float
         Diametral: how far the inner ring moves from side to side, m; below zero the rollers are pressed.
     crowning : {"cylindrical", "circular", "partial", "logarithmic"}
@@ -83,7 +89,7 @@ class RollerBearing(RollingBearing):
     Notes
     -----
     Contacts are the slices of ISO/TS 16281, see `asperity.SlicedContact`. There is no film of lubricant, no
-    friction, and rings do not bend. A tapered roller is pushed along its axis by both contacts, by
+    friction in the balance, and rings do not bend. A tapered roller is pushed along its axis by both, by
     (Q_i + Q_o) sin β with β half the taper, and the rib holds it there. As rib and inner contact together
     press the inner ring along the normal of the outer contact, a ring sees both raceways at the angle of the
     outer one, and the rib as a spring in series with them, a compliance of 4 sin² β/k. What rollers are
@@ -104,17 +110,11 @@ class RollerBearing(RollingBearing):
     """
 
     ELEMENT = "roller"
-    LEFT_OUT: ClassVar = (
-        "There is no film of lubricant, no friction, and no rib but that of tapered rollers; while it turns "
-        "rings are held at their tilt, rollers at half of it; slices of a roller do not know of each other, "
-        "nor of sharp ends."
-    )
+    LEFT_OUT: ClassVar = f"There is no film of lubricant, {_LEFT_OUT}."
     """What no computation of it has."""
     LEFT_OUT_OILED: ClassVar = (
-        "Contacts are full of oil; there is no friction, and no rib but that of tapered rollers; while it "
-        "turns rings are held at their tilt, rollers at half of it; slices of a roller do not know of each "
-        "other, nor of sharp ends; static loads are those without oil, and all contacts with a ring have one "
-        "damping, that under its heaviest load."
+        f"Contacts are full of oil; there is {_LEFT_OUT}; static loads are those without oil, and all "
+        "contacts with a ring have one damping, that under its heaviest load."
     )
     """What none with oil has."""
     SOURCE: ClassVar = "ISO/TS 16281:2008 (load and stiffness of rollers by slices)."
@@ -156,6 +156,15 @@ class RollerBearing(RollingBearing):
         "1 N/m to 1 TN/m: softer holds nothing, harder is rigid",
         default=None,
         otherwise="the rib is rigid",
+        goes_with="taper",
+    )
+    rib_height: float | None = parameter(
+        _LENGTH,
+        "1 mm",
+        "how far above the inner raceway the rib touches the end of a tapered roller",
+        "10 um to 0.1 m: ribs lie between",
+        default=None,
+        otherwise="friction on the rib is not looked at",
         goes_with="taper",
     )
     clearance: float = parameter(
@@ -209,9 +218,13 @@ class RollerBearing(RollingBearing):
         )
         cone = not self.taper or self.contact_angle > self.taper
         require(cone, "contact_angle", received, allowed, "Give both, or no taper.")
-        held = self.rib_stiffness is None or self.taper > 0.0
-        received, remedy = "one of rollers that do not taper", "Give a taper, or leave it out."
-        require(held, "rib_stiffness", received, "none", remedy)
+        for name in ("rib_stiffness", "rib_height"):
+            held = getattr(self, name) is None or self.taper > 0.0
+            received, remedy = "one of rollers that do not taper", "Give a taper, or leave it out."
+            require(held, name, received, "none", remedy)
+        height = self.rib_height or 0.0
+        received, allowed = f"{rounded(1e3 * height, 4)} mm", f"less than half a roller's {D * 1e3:.4g} mm"
+        require(height < 0.5 * D, "rib_height", received, allowed, "It counts from the inner raceway.")
         _ = self.profile  # checks the crowning
 
     @classmethod
@@ -302,6 +315,21 @@ class RollerBearing(RollingBearing):
             N; zero of rollers that do not taper.
         """
         return self.pushed_along * (inner + outer) + self.flung_along * np.asarray(lift)
+
+    @property
+    def rib_lever(self) -> float:
+        """How far a roller's end slides on the rib as one ring turns against the other, m/rad, or NaN.
+
+        So much torque on the rings balances the friction of an end. Rollers turn against the inner ring about
+        the line of their contact, from which the rib is h away: by f_i − f_c about the axis of the bearing
+        and by their spin f_s about their own, together h (|f_i − f_c| cos(α − β) + f_s)/|f_i − f_o|, which is
+        h sin α/(2 sin β) of cones with one apex.
+        """
+        if self.rib_height is None:
+            return math.nan
+        turning = self.kinematics(1.0)
+        about_bearing = abs(turning.inner - turning.cage) * math.cos(self.contact_angle - 0.5 * self.taper)
+        return self.rib_height * (about_bearing + turning.spin)
 
     def interference_force(self, overlap: float) -> float:
         """Force of a roller between raceways that overlap along its normal, m; N."""

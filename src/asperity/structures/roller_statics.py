@@ -125,6 +125,21 @@ class LoadedRollers(LoadedRow):
         lift = of.centrifugal_force(self.speed) * of.flung_outwards(of.contact_angle)
         return of.rib_force(self.inner_load, self.outer_load, lift)
 
+    def rib_torque(self, friction: float) -> Array:
+        """Torque that turns one ring against the other as rollers' ends rub on the rib (m, Z), N m.
+
+        Parameters
+        ----------
+        friction : float
+            Coefficient of friction.
+
+        Returns
+        -------
+        ndarray (m, Z)
+            Part of each roller; times 2π turns per second it is its heat, W.
+        """
+        return friction * self.bearing.rib_lever * self.rib_force
+
     @property
     def carrying_length(self) -> Array:
         """Length of each roller that touches the inner ring (m, Z), m."""

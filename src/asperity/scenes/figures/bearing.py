@@ -517,7 +517,15 @@ def _rib_of(tree: DataTree) -> str:
         return ""
     forces = data.of_law(tree, bearing.RIB_FORCE, _main(tree))
     ends = between(rounded(forces.min(), 3), rounded(forces.max(), 3))
-    return f"As it runs the rib pushes rollers along their axes by {ends} N. "
+    told = f"As it runs the rib pushes rollers along their axes by {ends} N. "
+    if data.present(tree, bearing.RIB_TORQUE):
+        torque = 1e3 * float(data.of_law(tree, bearing.RIB_TORQUE, _main(tree)))
+        heat = float(data.values(tree, bearing.RIB_HEAT).sum(axis=1).mean())
+        told += (
+            f"Their friction on it asks the rings for {rounded(torque, 4)} N mm, and turns "
+            f"{rounded(heat, 4)} W into heat under the static load{_at_fastest(tree)}. "
+        )
+    return told
 
 
 def ball_sliding_table(tree: DataTree) -> ReportTable | None:
