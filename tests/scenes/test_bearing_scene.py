@@ -36,6 +36,7 @@ from small_cases import BEARING
 D, PITCH, BALLS, TURNS = 7.94e-3, 39.04e-3, 9, 30.0
 RATE = 51_200.0
 SMOOTH, PIT = {name: each for name, each in BEARING.items() if name != "fault"}, BEARING["fault"]
+SHORT = SMOOTH | {"duration": "50 ms"}
 B6205 = asperity.BallBearing.named("6205")
 OUTER = 0.5 * BALLS * TURNS * (1.0 - D / PITCH)
 INNER = 0.5 * BALLS * TURNS * (1.0 + D / PITCH)
@@ -95,7 +96,8 @@ def test_a_pit_strikes_by_what_the_static_load_loses_over_it():
         bearing.outer_contact, prepared.raceways[1], prepared.case.contacts[1][1]
     ).min()
     for angle in (0, 25, 40, 180):
-        tree = asperity.run(BEARING | {"fault": PIT | {"angle": f"{angle} deg"}}, brief=True)
+        case = BEARING | {"fault": PIT | {"angle": f"{angle} deg"}, "duration": "50 ms"}
+        tree = asperity.run(case, brief=True)
         heard.append(group(tree)["band_velocity"].values[0, 0, 2])
         load = bearing.loaded(100.0, speed=TURNS, cage_angles=[np.radians(angle)]).outer_load[0, 0]
         lost.append(load - bearing.outer_contact.force(bearing.outer_contact.approach(load) - depth))
@@ -225,7 +227,7 @@ def test_balls_differ_and_one_alone_has_the_fault():
 
 def test_several_faults_lie_where_they_are_and_each_is_heard():
     others = {"on": "inner"}, {"on": "ball", "ball": 4}, {"angle": "90 deg"}
-    case = as_case(BEARING | {"fault": [PIT, *(PIT | each for each in others)], "duration": "0.5 s"})
+    case = as_case(BEARING | {"fault": [PIT, *(PIT | each for each in others)], "duration": "0.4 s"})
     prepared = prepare_bearing(case)
     assert prepared.caught == ()
     inner, outer = (np.flatnonzero(each.faults.any(axis=1)) / len(each.faults) for each in prepared.raceways)
@@ -266,6 +268,7 @@ def test_direct_rolls_balls_as_their_average_where_waves_are_long(monkeypatch):
 
     monkeypatch.setattr("asperity.scenes.computed_bearing.laws_on", seen)
     monkeypatch.setattr("asperity.scenarios.raceway_grids.CELLS", (3, 4))
+    monkeypatch.setattr("asperity.rolling.bearing.INSTANTS", 2)
     tree = asperity.run(case, brief=True)
     assert directions == [False, True]  # balls run forwards on the ring that stands still
     force = tree["rolling/outer_force"].values[..., 20:-20]  # without the ends of the filter
@@ -392,7 +395,7 @@ def test_balls_slide_in_their_grooves_without_spin_under_a_radial_load(runs):
 
 def test_raceways_wear_by_the_work_of_sliding_where_a_coefficient_is_given(runs):
     """Archard: the volume is k/H of the heat over friction of all contacts; the page says how deep."""
-    tree = runs(BEARING | {"wear_coefficient": 1e-8})
+    tree = asperity.run(SHORT | {"wear_coefficient": 1e-8}, brief=True)
     found = group(tree)
     assert "wear_rate" not in group(runs(BEARING))
     heat = found["sliding_heat"].sum("ball").mean("cage_angle")
@@ -411,7 +414,7 @@ def test_raceways_wear_by_the_work_of_sliding_where_a_coefficient_is_given(runs)
 
 def test_friction_takes_less_heat_than_if_all_slipped_and_turns_the_rings_against_it(runs):
     """At rest; and in time under the forces of the run, whose torque hardly differs on even raceways."""
-    tree = runs(BEARING | {"friction": 0.1, "wear_coefficient": 1e-8})
+    tree = asperity.run(SHORT | {"friction": 0.1, "wear_coefficient": 1e-8}, brief=True)
     found = group(tree)
     assert "friction_heat" not in group(runs(BEARING))
     heat, most = found["friction_heat"].values, 0.1 * found["sliding_heat"].values
@@ -429,7 +432,7 @@ def test_friction_takes_less_heat_than_if_all_slipped_and_turns_the_rings_agains
     assert power.mean() == pytest.approx(np.nansum(heat, axis=(0, 2)).mean(), rel=0.1)
     kept_numbers = [each for each in tree["rolling"].data_vars.values() if "time" in each.dims]
     size = sum(each.size for each in kept_numbers if VIEW_OF not in each.attrs)
-    assert size <= as_case(BEARING | {"friction": 0.1}).numbers_written < 1.25 * size
+    assert size <= as_case(SHORT | {"friction": 0.1}).numbers_written < 1.25 * size
     worn = 1e-8 / (0.1 * B6205.hardness) * np.nansum(heat, axis=2).mean(axis=1)
     np.testing.assert_allclose(found["worn_volume_rate"], worn, rtol=1e-6)
     page = page_of(tree)
@@ -501,7 +504,7 @@ def test_a_law_that_is_registered_rolls_in_a_bearing_with_keys_of_its_own(tmp_pa
     factor = key(Number(above=0), 1.0, "times Hertz")
     laws.register(laws.LawSpec("stiffer", "Hertz, times a factor.", build, parameters={"factor": factor}))
     try:
-        case = as_case(SMOOTH | {"laws": ["hertz", "stiffer"], "duration": "50 ms"})
+        case = as_case(SHORT | {"laws": ["hertz", "stiffer"]})
         tree = asperity.run(case)
         hertz, alike = tree["rolling/inner_force"].values
         np.testing.assert_array_equal(alike, hertz)

@@ -204,6 +204,7 @@ class HalfSpace:
         inside = np.flatnonzero(free)
         softer = 1.0 / np.sqrt(1.0 + rims.SHARED * np.maximum(-own, 0.0) * self.influence.taps[0])
         taps = tuple(self.influence.taps.tolist())
+        spectrum = padded_spectrum(self.influence.table, *self.shape)
         field = np.zeros(self.shape)
 
         def spread(values: Array) -> Array:
@@ -217,7 +218,7 @@ class HalfSpace:
                 + along * (p[2:, 1:-1] - p[:-2, 1:-1])
                 + across * (p[1:-1, 2:] - p[1:-1, :-2])
             )
-            return (self.displacement(field) - gap).flat[inside]
+            return (convolve_padded(field[None], spectrum, np)[0] - gap).flat[inside]
 
         def preconditioned(values: Array) -> Array:
             return (softer * apply_stencil((softer * spread(values))[None], taps, np)[0]).flat[inside]
