@@ -57,8 +57,9 @@ def test_heat_follows_forces_and_speed_of_balls_that_both_rings_roll():
     assert found[bearing.FRICTION_TORQUE] == pytest.approx([2.0 / 3.0 * torque], rel=1e-3)
 
 
-def test_the_most_loaded_contacts_are_laid_out_as_those_of_other_scenes_are():
+def test_the_most_loaded_contacts_are_laid_out_as_those_of_other_scenes_are(monkeypatch):
     """Heat, slip and moment as of all balls at rest; the map is of the contact that makes most heat."""
+    monkeypatch.setattr("asperity.structures.bearing_statics.STEPS", 4)  # angles of the cage
     of = as_case(BEARING | {"radial": "200 N", "axial": "200 N", "friction": 0.1})
     found = ball_group(run_of(of, at_rest(of)))
     loads = np.stack([of.static.inner_load, of.static.outer_load]).reshape(2, -1)
@@ -85,8 +86,9 @@ def test_the_most_loaded_contacts_are_laid_out_as_those_of_other_scenes_are():
     assert 0.0 < found[schema.SLIP_VELOCITY].max() < 0.05 * speed
 
 
-def test_friction_of_the_case_falls_in_time_and_at_rest():
+def test_friction_of_the_case_falls_in_time_and_at_rest(monkeypatch):
     """By hardly anything over 100 m/s; and at once to what half of the coefficient gives where most slips."""
+    monkeypatch.setattr("asperity.structures.bearing_friction.CELLS", (12, 24))
     of = as_case(BEARING | EVEN | {"friction": 0.01})
     cases = {
         "stays": of,

@@ -37,13 +37,13 @@ ON_BEAM = {
 }  # fmt: skip
 SPEED = 30.0
 BANDS = 10.0 ** (np.arange(-20, -4) / 10.0)
-LINE = from_bands(40_000, 0.5e-3, BANDS, np.full(BANDS.size, -10.0), 3).heights
+LINE = from_bands(20_000, 1e-3, BANDS, np.full(BANDS.size, -10.0), 3).heights
 ON_TRACK = {
     "speed": SPEED, "start": 2.0, "duration": 0.3, "settling": 0.06, "laws": ["linear", "hertz"],
     "track": {"name": "nordborg", "points": [4.0]},
-    "numerics": {"time_step": 0.5e-3 / SPEED, "highest_frequency": 2500, "kernel": "scatter"},
-    "contact": {"spacing": 0.5e-3, "window": 20e-3, "samples": 2, "sample_length": 60e-3},
-    "surface": {"line": Profile(LINE, 0.5e-3), "continuation": "mirror"},
+    "numerics": {"time_step": 1e-3 / SPEED, "highest_frequency": 2500, "kernel": "scatter"},
+    "contact": {"spacing": 1e-3, "window": 20e-3, "samples": 2, "sample_length": 60e-3},
+    "surface": {"line": Profile(LINE, 1e-3), "continuation": "mirror"},
 }  # fmt: skip
 WHEEL = {"radius": 0.46, "mass": 600, "load": 65e3, "transverse_radius": "inf"}
 BOGIE = WHEEL | {"type": "bogie", "distance": 2.5, "masses": [1500], "springs": [0.6e6], "dampers": [1e4]}

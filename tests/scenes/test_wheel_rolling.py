@@ -104,6 +104,7 @@ def levels_on_textures(kept, speed, seeds, kernels):
     return 10.0 * np.log10(power)
 
 
+@pytest.mark.long
 def test_a_slow_run_up_on_a_rail_is_constant_speeds_band_by_band(kept):
     """40 to 56 m/s in 1.6 s: beside the frequency domain for the texture that is met, and beside 48 m/s."""
     rising = levels_on_textures(kept, SpeedCourse([0.0, 1.6], [40.0, 56.0]), [5], 9)
@@ -114,9 +115,11 @@ def test_a_slow_run_up_on_a_rail_is_constant_speeds_band_by_band(kept):
 
 
 def test_half_as_long_a_run_up_on_a_rail_is_twice_as_near_constant_speed(kept):
-    """48 to 56 m/s, over four textures."""
+    """48 to 56 m/s, over four textures; each beside the frequency domain for what it met."""
     rising = levels_on_textures(kept, SpeedCourse([0.0, 1.6], [48.0, 56.0]), range(1, 5), 5)
     constant = levels_on_textures(kept, 52.0, range(1, 5), 1)
+    np.testing.assert_allclose(*rising, atol=0.57)
+    np.testing.assert_allclose(*constant, atol=0.57)
     np.testing.assert_allclose(rising[0], constant[0], atol=0.2)
 
 
@@ -181,7 +184,7 @@ def test_a_point_moves_with_the_contact_when_it_is_passed(kernel):
         passed(kernel, history, origin, [np.nan])
 
 
-@pytest.mark.parametrize("course", [([0.0, 0.32], [16.0, 24.0]), ([0.1, 0.22], [24.0, 16.0])])
+@pytest.mark.parametrize("course", [([0.0, 0.16], [16.0, 20.0]), ([0.1, 0.16], [20.0, 16.0])])
 def test_a_rail_moves_as_by_superposition_at_fixed_points_while_the_speed_changes(kept, course):
     """Under wheels 2.5 m apart at 25 to 67 m/s²: kernels of constant speeds, beside those of no speed."""
     speed, places, h = SpeedCourse(*course), np.array([0.0, 2.5]), STEP
@@ -191,7 +194,7 @@ def test_a_rail_moves_as_by_superposition_at_fixed_points_while_the_speed_change
     run = roll_bodies(rail, [Body.rigid(MASS, LOAD)] * 2, laws, speed=speed, **path)
     settled = run.history.shape[1] - len(run.time)
     rolled = speed.covered(h * (np.arange(run.history.shape[1]) - settled))
-    points = np.arange(2.7, 7.0, 0.25)
+    points = np.arange(2.7, 6.8, 0.25)
     by_each = [
         passed_points(rail.kernel, force[None], at + rolled, points, settled)[0][0]
         for at, force in zip(places, run.history, strict=True)

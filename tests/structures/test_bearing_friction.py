@@ -27,6 +27,8 @@ D, PITCH = B6205.ball_diameter, B6205.pitch_diameter
 CURVATURE = contact_curvature(0.5 * D, B6205.inner_conformity * D)
 INNER, LOAD = B6205.inner_contact, 60.0
 AXES = INNER.semi_axes(INNER.approach(LOAD))
+FOUR = 0.5 * math.pi / B6205.balls * np.arange(4)
+"""Angles of the cage over the passing of a ball."""
 
 
 def rolled(contact, friction, spin=0.0, curvature=0.0, bodies=(STEEL, STEEL)):
@@ -85,7 +87,7 @@ def test_where_all_slips_a_ball_in_its_groove_rolls_purely_on_the_lines_of_heath
 def test_where_all_slips_heat_is_the_most_there_is_on_both_rings():
     """A search that hardly ends: with so little friction the force changes line by line of cells."""
     of = B6205.with_(inner_conformity=0.515, outer_conformity=0.54)
-    loaded = of.loaded(radial=200.0)
+    loaded = of.loaded(radial=200.0, cage_angles=FOUR)
     found = creepage_of(loaded)
     turning = of.kinematics(25.0, contact_angle=0.0)
     heat = friction_of_balls(loaded, found, turning, Friction(0.001)).heat
@@ -120,7 +122,7 @@ def test_rings_are_turned_by_what_grooves_dissipate():
     """
     of = B6205.with_(contact_angle=None, clearance=0.0)
     turning = of.kinematics(25.0, contact_angle=0.0)
-    loaded = of.loaded(radial=200.0)
+    loaded = of.loaded(radial=200.0, cage_angles=FOUR)
     friction = friction_of_balls(loaded, creepage_of(loaded), turning, Friction(0.1))
     ball = 0.5 * D
     driven = 0.0

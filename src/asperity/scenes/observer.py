@@ -144,7 +144,8 @@ class Observer:
     def declared(self, found: Any) -> Values:
         """Make what it found ready to be written; an `InputError` says what is not as it declares."""
         what = f"observer {self.name}"
-        require(isinstance(found, Mapping), what, shown(found), "values by its entries, as a dict")
+        if not isinstance(found, Mapping):  # what is right is not written out
+            raise InputError(what, shown(found), "values by its entries, as a dict")
         strange = [shown(each) for each in found if each not in self.entries]
         require(not strange, what, ", ".join(strange), "entries that it declares")
         return _fitting(what, found)
