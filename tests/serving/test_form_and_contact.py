@@ -1,5 +1,7 @@
 """The form on the page is the schema of the case, and its contact is Hertz's, whatever led to it."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -8,10 +10,11 @@ from asperity.case.any_case import entries
 from asperity.case.cases import case_class, case_of, parse_case, template
 from asperity.case.toml import read_toml
 from asperity.errors import InputError
-from asperity.parameters import Origin
+from asperity.parameters import File, Origin
 from asperity.serving.case_form import case_data, form_values, forms
 from asperity.serving.contact_preview import MOST_CELLS_SHOWN, PressedSample
 from asperity.serving.run_view import viewed_run
+from asperity.serving.worker import answered
 from refusals import refusals
 from small_cases import BALL, BEARING, WHEEL
 
@@ -88,6 +91,28 @@ def test_a_case_that_names_a_file_of_its_own_says_to_upload_it():
     data = {"kind": "ball-on-beam", "surface": {"file": "/home/me/beam.x3p"}}
     with pytest.raises(InputError, match=r"surface.file: received 'beam.x3p'.*Upload it"):
         form_values(data, lambda path: None)
+
+
+FILES = [
+    (kind, each.dotted)
+    for kind in ("ball-on-beam", "wheel-on-rail", "bodies", "ball-bearing")
+    for each in entries(case_class(kind))
+    if each.name == "speed" or isinstance(getattr(each.key.kind, "other", each.key.kind), File)
+]
+
+
+@pytest.mark.parametrize(("kind", "dotted"), FILES, ids=map(".".join, FILES))
+def test_no_file_that_a_case_names_is_opened_unless_it_was_uploaded(kind, dotted, tmp_path):
+    """What is wrong with it, or in it, would be told."""
+    (tmp_path / "of somebody else.csv").write_text("SECRET, SECRET\n")
+    section, _, name = dotted.rpartition(".")
+    heading = f"[{section}]\n" if section else ""
+    for path in (tmp_path / "of somebody else.csv", "of somebody else.csv"):
+        text = f'kind = "{kind}"\n{heading}{name} = {json.dumps(str(path))}\n'
+        question = {"question": "fill", "text": text, "surfaces": str(tmp_path)}
+        (told,) = answered(json.dumps(question))["refused"]
+        assert told.startswith(f"{dotted}: received 'of somebody else.csv'" if section else f"{dotted}: ")
+        assert told.endswith(("Upload it, and choose it in the form.", "Write its points."))
 
 
 SMOOTH = {

@@ -147,8 +147,7 @@ def _value(entry: any_case.CaseKey, text: str, file_of: Callable[[str], Path | N
         return [_number(part) if isinstance(kind.each, Number) else part for part in parts if part]
     match kind:
         case Speed() if names_table(text):
-            allowed = f'{kind.allowed}, or points of it, as "1 {kind.meant or "m/s"} at 0 s, …"'
-            raise InputError(entry.dotted, shown(text), allowed, "Write its points.")
+            raise _speed_table(entry.dotted, kind, text)
         case Number() | Either(_, Number()):
             return _number(text)
         case Flag():
@@ -168,6 +167,11 @@ def _value(entry: any_case.CaseKey, text: str, file_of: Callable[[str], Path | N
     return text
 
 
+def _speed_table(dotted: str, kind: Speed, text: str) -> InputError:
+    allowed = f'{kind.allowed}, or points of it, as "1 {kind.meant or "m/s"} at 0 s, …"'
+    return InputError(dotted, shown(text), allowed, "Write its points.")
+
+
 def _number(text: str) -> int | float | str:
     """The number that a text is; the text itself if it is none, of which the case will complain."""
     for kind in (int, float):
@@ -179,9 +183,10 @@ def _number(text: str) -> int | float | str:
 
 
 def form_values(data: Mapping[str, Any], id_of: Callable[[str], str | None]) -> dict[str, str]:
-    """Write the keys and values of a case that is right as they would be typed into its form.
+    """Write the keys and values of a case as they would be typed into its form.
 
-    `id_of` finds the identifier of a file's path; an `InputError` names a file that has none.
+    `id_of` finds the identifier of a file's path; an `InputError` names a file that has none. No file is
+    opened.
     """
     model = cases.case_class(data.get(_KIND))
     found = {}
@@ -191,11 +196,13 @@ def form_values(data: Mapping[str, Any], id_of: Callable[[str], str | None]) -> 
         flat |= {f"{title}.{name}": value for name, value in keys.items()}
     for dotted, value in flat.items():
         kind = any_case.entry_of(model, dotted).key.kind
+        if isinstance(kind, Speed) and isinstance(value, str) and names_table(value):
+            raise _speed_table(dotted, kind, value)
         named = isinstance(kind, File)
         named |= isinstance(kind, Either) and isinstance(kind.other, File) and value not in kind.words
         text = id_of(str(value)) if named else typed(value)
         if text is None:
             remedy = "Upload it, and choose it in the form."
-            raise InputError(dotted, shown(Path(value).name), "a surface that was uploaded", remedy)
+            raise InputError(dotted, shown(Path(str(value)).name), "a surface that was uploaded", remedy)
         found[dotted] = text
     return found

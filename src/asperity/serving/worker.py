@@ -71,11 +71,9 @@ def read_case_file(text: str, surfaces: str) -> Told:
     """Read a case file into the form."""
     root = Path(surfaces)
     data = toml.read_toml(text, "case", "the case")
-    cases.case_of(data, Origin("the case", root, units=True))
-    return {
-        "kind": data["kind"],
-        "values": case_form.form_values(data, lambda path: stored_runs.identifier_of(root, path)),
-    }
+    values = case_form.form_values(data, lambda path: stored_runs.identifier_of(root, path))
+    cases.case_of(data, Origin("the case", root, units=True))  # once it names nothing but what was uploaded
+    return {"kind": data["kind"], "values": values}
 
 
 def press_form(kind: str, values: dict[str, object], surfaces: str, share: float | None, whole: bool) -> Told:
