@@ -31,7 +31,9 @@ MOST_HELD = 2**26  # bytes; what no disk takes is held in memory up to here
 _FIRST = b"__key__.npy"
 """First member of each archive, whose name stands within …"""
 _HEAD = 64
-"""… so many bytes."""
+"""… so many bytes; and its value, four bytes a character, within …"""
+_KEY = 1024
+"""… so many, unless it is longer."""
 _PART = re.compile(r"\.[\w-]+\.npz\.[0-9a-f]{8}\.part", re.ASCII)
 KERNELS = "ASPERITY_KERNELS"
 """Names the folder of compiled kernels; by default they lie in the cache."""
@@ -179,10 +181,12 @@ class Store:
 
 
 def _is_kept(path: Path) -> bool:
-    """Whether a store has written a file: an archive that begins with its key."""
+    """Whether a store has written a file: an archive that begins with its key, by which it is still named."""
+    name = path.stem.encode(f"utf-32-{sys.byteorder[0]}e")
     try:
         with open(path, "rb") as file:
-            return _is_file(path) and _FIRST in file.read(_HEAD)
+            head = file.read(_KEY + len(name))
+            return _is_file(path) and _FIRST in head[:_HEAD] and name in head
     except OSError:
         return False
 

@@ -1,6 +1,7 @@
 """What is made of a finished run: reports, figures, sounds, comparisons, citations; and what is kept."""
 
 import json
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -86,6 +87,11 @@ def test_what_is_kept_is_shown_and_cleared(own_folder, monkeypatch):
         np.savez(own, heights=np.eye(3))
     (cache / ".map.npz.01234567.part").mkdir()
     (cache / f"scan-{64 * '0'}.npz").symlink_to(cache / "map.npz")
+    shutil.copy(cache / "scan-1.npz", cache / "my copy.npz")
+    elsewhere = own_folder / "elsewhere"
+    elsewhere.mkdir(mode=0o700)
+    (elsewhere / f"asperity.kernels.box-{24 * '0'}").write_bytes(b"mine")
+    (version.parent / "fedcba9876543210").symlink_to(elsewhere)
     mine = {path.name for path in cache.iterdir()} - {"scan-1.npz", ".scan-2.npz.01234567.part"}
     told = [
         f"{cache}: 1 result{{}}, 1 MiB",
@@ -97,3 +103,4 @@ def test_what_is_kept_is_shown_and_cleared(own_folder, monkeypatch):
     assert call("cache", "--clear").stdout.splitlines() == [line.format(" deleted") for line in told]
     assert {path.name for path in cache.iterdir()} == mine
     assert [path.name for path in version.iterdir()] == ["map.npz"]
+    assert len(list(elsewhere.iterdir())) == 1

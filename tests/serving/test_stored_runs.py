@@ -1,6 +1,9 @@
 """Uploads go to disk in pieces, lead nowhere else, and stay only where somebody can read them; so do runs."""
 
 import asyncio
+import json
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -9,6 +12,7 @@ from asperity.errors import InputError
 from asperity.serving import stored_runs
 from asperity.serving.stored_runs import TooLarge, keep_run, receive, told_of, uploaded
 from asperity.serving.worker import examined
+from command_line import SMALL
 
 
 async def pieces(*parts):
@@ -151,6 +155,22 @@ def test_links_in_a_run_lead_nowhere(tmp_path):
     (folder / "sounds").mkdir()
     (folder / "sounds" / "own.wav").write_bytes(b"")
     assert stored_runs.sounds_of_run(folder) == ["own.wav"]
+
+
+def test_a_run_writes_its_sounds_where_no_link_leads(tmp_path):
+    """It begins anew in a folder of its own, whatever stands in its place."""
+    elsewhere, folder = tmp_path / "elsewhere", tmp_path / ("0" * 16)
+    elsewhere.mkdir()
+    folder.mkdir()
+    (folder / "sounds").symlink_to(elsewhere)
+    (folder / "case.toml").write_text(SMALL)
+    command = [sys.executable, "-c", "from asperity.serving.worker import roll_run; roll_run()", str(folder)]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as rolls:
+        told = json.loads(rolls.stdout.read().splitlines()[-1])
+    assert told == {"state": "done"}
+    assert stored_runs.is_own(folder, "run.nc")
+    assert stored_runs.sounds_of_run(folder)
+    assert not list(elsewhere.iterdir())
 
 
 @pytest.mark.parametrize(

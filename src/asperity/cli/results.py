@@ -107,7 +107,8 @@ def show_cache(*, clear: bool = False) -> dict[str, Any]:
     for folder in kernel_folders():
         versions: list[Path] = []
         with suppress(OSError):  # a name that is too long
-            versions = [place for place in folder.glob("[0-9a-f]" * 16) if is_private(place)]
+            found = folder.glob("[0-9a-f]" * 16)
+            versions = [place for place in found if is_private(place) and not place.is_symlink()]
         kernels = [file for place in versions for file in place.iterdir() if _KERNEL.fullmatch(file.name)]
         left[folder] = [part for place in versions for part in left_overs(place)]
         kept += [("compiled functions", folder, sorted(kernels))] if kernels else []

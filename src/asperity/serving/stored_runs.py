@@ -55,6 +55,13 @@ def is_own(folder: Path, name: str) -> bool:
     return file.is_file() and file.resolve() == folder.resolve() / name
 
 
+def own_folder(folder: Path) -> Path:
+    """A folder to be written into, made anew where a link to another stands in its place."""
+    if folder.is_symlink():
+        folder.unlink()
+    return folder
+
+
 def kept_in(root: Path) -> list[Path]:
     """Folders that are kept there, the latest first."""
     found = [folder for each in root.glob("*") if (folder := folder_of(root, each.name))]

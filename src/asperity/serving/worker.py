@@ -212,7 +212,7 @@ def _roll(folder: Path, progress: Progress) -> None:
         tree = run(prepare_case(cases.read_case(folder / stored_runs.CASE), "the case"), progress=progress)
         progress(0, 1, "writing")
         with suppress(errors.InputError):  # nothing to listen to
-            listen(tree, folder / stored_runs.SOUNDS)
+            listen(tree, stored_runs.own_folder(folder / stored_runs.SOUNDS))
         save(tree, folder / stored_runs.RESULT)
 
 
