@@ -1,4 +1,4 @@
-"""How kernels are compiled, and kept on disk: the one place that knows private names of numba.
+"""How kernels are compiled, and kept on disk: here and in `lowering` private names of numba stand.
 
 Kernels of time loops get named tuples of arrays; counting references to those arrays at every call costs ten
 times the arithmetic. Functions that allocate nothing do not need to count (``_nrt``), and inside one compiled
@@ -9,7 +9,8 @@ every array of every named tuple in them. So only what Python calls has one, and
 has none is optimised, and made machine code, as part of what has one alone: numba would do both at every
 kernel, for it and for all that it calls. Python looks for no garbage meanwhile, which took a third of the
 time before LLVM's; the type of an operator on numbers is looked for once, and passes over what kernels do
-not contain are left out: 6 to 8 % of a compilation.
+not contain are left out: 6 to 8 % of a compilation. Intermediate code is half of what numba would write
+(`asperity.kernels.lowering`).
 
 What numba would keep are pickles, and machine code that is run as it is. So only files are read that are
 as they were written, by their seal, in a folder that nobody but the user can write to; a file is named by all
@@ -73,16 +74,21 @@ try:
     from numba.core.codegen import JITCodeLibrary
     from numba.core.compiler import Compiler, CompileResult
     from numba.core.cpu import CPUTargetOptions
+    from numba.core.lowering import Lower
     from numba.core.registry import CPUDispatcher
     from numba.core.runtime.nrt import rtsys
     from numba.core.serialize import dumps
+    from numba.core.typed_passes import NativeLowering
     from numba.core.types import Boolean, Number
     from numba.core.types.functions import BaseFunction
+
+    from asperity.kernels.lowering import NEEDED, LeanLowering
 
     PLAIN = not all(
         [hasattr(CPUTargetOptions, name) for name in HIDDEN]
         + [hasattr(CompileResult, name) for name in ("_reduce", "_rebuild")]
         + [hasattr(JITCodeLibrary, name) for name in STEPS]
+        + [hasattr(Lower, name) for name in NEEDED]
         + ["get_call_type" in vars(BaseFunction), hasattr(Compiler, "define_pipelines")]
     )
 except ImportError:
@@ -151,10 +157,14 @@ class _Compiler(Compiler):
     """Numba's compiler, of a kernel with an entry."""
 
     def define_pipelines(self) -> Any:
-        """What numba does, without what no kernel needs."""
+        """What numba does, without what no kernel needs, and with less intermediate code."""
         managers = super().define_pipelines()
         for each in managers:
-            each.passes = [entry for entry in each.passes if entry[0].__name__ not in NEEDLESS]
+            each.passes = [
+                (LeanLowering if done is NativeLowering else done, what)
+                for done, what in each.passes
+                if done.__name__ not in NEEDLESS
+            ]
         return managers
 
     def compile_extra(self, function: Callable[..., Any]) -> Any:

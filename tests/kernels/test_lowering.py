@@ -1,0 +1,165 @@
+"""Kernels compute what Python computes, whatever their variables and indices are, with little code."""
+
+from typing import NamedTuple
+
+import numba
+import numpy as np
+import pytest
+from numba.core.codegen import CPUCodeLibrary
+
+from asperity.kernels import options
+from asperity.kernels.options import CALLED, INNER, LOOP, compiled
+
+
+class Two(NamedTuple):
+    """What kernels are called with."""
+
+    first: np.ndarray
+    second: np.ndarray
+
+
+@compiled(**INNER)
+def swapped(two):
+    return Two(two.second, two.first)
+
+
+@compiled(**CALLED)
+def difference(two, i):
+    return two.first[i] - two.second[i]
+
+
+def of_parts(two, i):
+    other = Two(two.second, two.first)
+    return other.first[i] - other.second[i]
+
+
+@compiled(**LOOP)
+def of_parts_called(two, i):
+    return difference(swapped(two), i)
+
+
+def from_both_ends(a, b, k):
+    a[-1] = a[0] + a[k] + a[-k]
+    b[k, -1] = b[-k, k] + b[-1, -1] + len(a) * b.shape[0] + b.shape[1]
+
+
+def of_a_row(a, b, k):
+    row = b[k]
+    row[0] = a[2] + row[-1]
+    a[0] = row.shape[0]
+
+
+def assigned_in_branches(a, b, k):
+    if k > 1:
+        x = a[0]
+    else:
+        x = a[1]
+    y = x
+    for i in range(k):
+        y = y * 2.0 + x
+        x = a[i] - y
+        last = i
+    a[0] = x + y + last
+
+
+def carried_over(a, b, k):
+    before = a[0]
+    for i in range(1, len(a)):
+        now = a[i]
+        a[i] = before
+        before = now + b[i % b.shape[0], 0]
+    a[0] = before
+
+
+def until_broken(a, b, k):
+    i = 0
+    while True:
+        here = a[i]
+        i += 1
+        if here > a[k] or i == len(a):
+            break
+    a[0] = here + i
+
+
+def exchanged(a, b, k):
+    for i in range(len(a) // 2):
+        a[i], a[-1 - i] = a[-1 - i], a[i]
+    x, y = a[0], a[1]
+    x, y = y, x
+    a[k] = x - y
+
+
+def of_another_type(a, b, k):
+    number = np.uint64(k)
+    a[number] = 3
+    b[number, number] = number
+    a[np.int8(-1)] = b[np.int32(-1), 0] + (k > 1)
+
+
+def of_a_tuple(a, b, k):
+    at = (k, k - 3)
+    pair = (a[k], b[at])
+    for i in range(2):
+        pair = (pair[1], pair[0] + i)
+    b[at] = pair[0] - 2.0 * pair[1]
+
+
+FUNCTIONS = [
+    from_both_ends, of_a_row, assigned_in_branches, carried_over, until_broken, exchanged, of_another_type,
+    of_a_tuple,
+]  # fmt: skip
+LAID_OUT = {
+    "in rows": lambda b: b.copy(),
+    "in columns": lambda b: np.asfortranarray(b),
+    "with gaps": lambda b: np.repeat(b, 2, axis=1)[:, ::2],
+    "backwards": lambda b: b.copy()[::-1, ::-1],
+}
+
+
+@pytest.mark.parametrize("layout", LAID_OUT)
+@pytest.mark.parametrize("function", FUNCTIONS, ids=lambda each: each.__name__)
+def test_a_kernel_computes_what_python_computes(function, layout):
+    random = np.random.default_rng(1)
+    a, b = random.normal(size=5), random.normal(size=(4, 3))
+    results = []
+    for each in (function, compiled(_nrt=False)(function)):
+        x, y = a.copy(), LAID_OUT[layout](b)
+        each(x, y, 2)
+        results.append(np.concatenate([x, y.ravel()]))
+    assert not np.array_equal(results[0], np.concatenate([a, LAID_OUT[layout](b).ravel()]))
+    np.testing.assert_array_equal(*results)
+
+
+def test_numbers_of_all_types_are_read_and_written():
+    def moved(x):
+        x[1, 0, -1] = x[0, 1, 1]
+
+    for dtype in (bool, np.int8, np.uint16, np.int64, np.float32, np.float64, np.complex128):
+        x = np.arange(8).reshape(2, 2, 2).astype(dtype)
+        x[0, 1, 1], x[1, 0, 1] = 1, 0
+        compiled(_nrt=False)(moved)(x)
+        assert x[1, 0, 1] == 1
+
+
+def test_parts_of_tuples_reach_the_kernels_that_are_called():
+    two = Two(np.array([1.0, 2.0]), np.array([5.0, 9.0]))
+    assert [of_parts_called(two, i) for i in (0, 1, -1)] == [4.0, 7.0, 7.0]
+    assert [compiled(**LOOP)(of_parts)(two, i) for i in (0, 1, -1)] == [4.0, 7.0, 7.0]
+
+
+def lines_of(function, *arguments, **how):
+    """Lines of intermediate code that LLVM gets for a function, without its entry."""
+    written, add = [], CPUCodeLibrary.add_ir_module
+    with pytest.MonkeyPatch.context() as patch:
+        count = lambda library, module: (written.append(str(module)), add(library, module))[1]  # noqa: E731
+        patch.setattr(CPUCodeLibrary, "add_ir_module", count)
+        function(*arguments)
+    return min(len(each.splitlines()) for each in written if "define" in each and "wrapper" not in each)
+
+
+@pytest.mark.skipif(options.PLAIN, reason="numba lacks what this needs")
+@pytest.mark.parametrize("function", [from_both_ends, until_broken], ids=lambda each: each.__name__)
+def test_intermediate_code_is_half_of_what_numba_writes(function):
+    arguments = np.ones(5), np.ones((4, 3)), 2
+    own = lines_of(compiled(_nrt=False)(function), *arguments)
+    assert own < 0.5 * lines_of(numba.njit(_nrt=False)(function), *arguments)
