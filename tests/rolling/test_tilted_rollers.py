@@ -316,8 +316,8 @@ RUBBING = {"axial": "1 kN", "friction": 0.1, "bearing": TAPER | {"rib_height": "
 
 def test_ends_that_rub_on_the_rib_are_warm_by_what_drives_the_rings():
     """2π f M of heat: at rest of each roller, in the run by the mean of all forces of the rib."""
-    quiet = {"outer_raceway": None, "duration": "12 ms"}
-    found = asperity.run(CASE | RUBBING | quiet, brief=True)
+    rubbing = CASE | RUBBING | {"outer_raceway": None, "duration": "12 ms", "centrifugal": False}
+    found = asperity.run(rubbing, brief=True)
     of = RollerBearing.named(
         "NU205", contact_angle=np.radians(14.0), taper=np.radians(4.0), rib_height=1.2e-3
     )
@@ -325,7 +325,7 @@ def test_ends_that_rub_on_the_rib_are_warm_by_what_drives_the_rings():
     torque = found["bearing/rib_torque"].values
     assert torque == pytest.approx(0.1 * of.rib_lever * force, rel=1e-5)
     heat = found["bearing/rib_heat"].values
-    rests = as_case(CASE | RUBBING).static.rib_force
+    rests = as_case(rubbing).static.rib_force
     np.testing.assert_allclose(heat, 200.0 * np.pi * 0.1 * of.rib_lever * rests, rtol=1e-9)
     assert heat.sum(axis=1).mean() == pytest.approx(200.0 * np.pi * torque[0], rel=2e-3)
     told = (
@@ -333,8 +333,6 @@ def test_ends_that_rub_on_the_rib_are_warm_by_what_drives_the_rings():
     )
     assert told in ball_contacts_table(found).note
     assert "friction_heat" not in found["bearing"]
-    still = as_case(CASE | RUBBING | {"centrifugal": False, "bearing": RUBBING["bearing"]})
-    assert still.static.speed == 0.0
 
 
 test_tilts_that_cannot_be_are_refused = refusals(
