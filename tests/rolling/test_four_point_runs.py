@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from scipy.optimize import least_squares
+from scipy.optimize import least_squares, root
 
 import asperity
 from asperity import BallBearing
@@ -93,6 +93,47 @@ def test_under_an_axial_load_it_starts_as_the_static_solution_on_circles():
         np.testing.assert_allclose(run.inner_force[:, 0], still.inner_loads[0, :, 0], rtol=1e-9)
         assert np.abs(run.flank_force[:, 0]).max() < 1e-9 * load
         assert apart(run)[2] == pytest.approx(still.displacement[0, 2], rel=1e-9)
+
+
+def on_circles(of, axial, lift):
+    """Loads of the outer and of the inner flanks (2, 2), by forces on ball and ring where angles follow."""
+    normals = np.array([[math.cos(FLANKS), math.sin(FLANKS)], [math.cos(FLANKS), -math.sin(FLANKS)]])
+    grooves = (of.outer_conformity, of.outer_contact, 1.0), (of.inner_conformity, of.inner_contact, -1.0)
+
+    def pressed(x):
+        ball, ring = x[:2] * 1e-6, np.array([-0.5 * of.clearance, 1e-6 * x[2]])
+        for conformity, contact, sign in grooves:
+            length = (conformity - 0.5) * of.ball_diameter
+            reach = ball - ring * (sign < 0.0) + sign * length * normals  # from centres of the arcs
+            far = np.linalg.norm(reach, axis=1, keepdims=True)
+            load = contact.stiffness_constant * np.maximum(far - length, 0.0) ** 1.5
+            yield load[:, 0], load * reach / far
+
+    def missed(x):
+        (_, on_outer), (_, on_inner) = pressed(x)
+        held = [lift, 0.0] - on_outer.sum(axis=0) - on_inner.sum(axis=0)
+        return [*held, on_inner[:, 1].sum() + axial / of.balls]
+
+    found = root(missed, [1.0, 5.0, 10.0], tol=1e-14)
+    assert np.abs(found.fun).max() < 1e-9 * axial
+    return np.array([load for load, _ in pressed(found.x)])
+
+
+def test_fast_balls_press_flanks_at_angles_that_part_and_in_a_run_do_not():
+    """On lines that keep their angle F_c/(2 cos α) is added to each outer flank; on circles half of it."""
+    still, lift = QJ.loaded(axial=400.0, speed=100.0, cage_angles=[0.0]), QJ.centrifugal_force(100.0)
+    outer, inner = on_circles(QJ, 400.0, lift)
+    np.testing.assert_allclose(still.outer_loads[0, 0], outer, rtol=1e-6)
+    np.testing.assert_allclose(still.inner_loads[0, 0], inner, rtol=1e-6)
+    run = rolled(QJ, 0.0, 400.0, speed=100.0, centrifugal=True)
+    light = float(run.flank_force[QJ.balls, 0])
+    angle = QJ.loaded(axial=400.0).contact_angle
+    thrown = QJ.centrifugal_force(100.0) / (2.0 * math.cos(angle))
+    assert light == pytest.approx(thrown, rel=0.02)
+    heavy = float(run.outer_force[0, 0]) - light
+    assert heavy == pytest.approx(400.0 / (12 * math.sin(angle)) + thrown, rel=0.02)
+    assert [round(each, 1) for each in (light, outer[1])] == [5.1, 2.6]  # as the page has them
+    assert heavy / outer[0] == pytest.approx(1.02, abs=0.005)
 
 
 def test_under_a_radial_load_it_is_near_the_static_solution_whose_angles_follow():
