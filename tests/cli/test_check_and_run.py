@@ -180,7 +180,7 @@ def test_a_check_shows_the_track_the_run_in_and_what_loss_factors_do_to_the_forc
     outcome = call("check", "lossy.toml")
     for text in ("40 Hz +0.4", "630 Hz −1.0", "else below 0.05"):
         assert text in words_of(outcome.stdout)
-    assert "lossy.toml: a valid case, 1 doubt:" in words_of(outcome.stdout)
+    assert "lossy.toml: a valid case, 2 doubts:" in words_of(outcome.stdout)
     assert "Nothing that answers after a force only has one loss factor at all" in outcome.stderr
     Path("viscous.toml").write_text(f'{RAIL}[track]\nname = "nordborg"\nrail_loss_factor = 0.0\n')
     assert "loss factors" not in call("check", "viscous.toml").stdout

@@ -193,6 +193,11 @@ def test_modes_that_move_the_axle_are_told_but_do_not_squeal(computed, falling, 
     assert answer(of_axle).startswith("Squeal: no, all ")
     assert "Not counted: axial n = 1 at " in answer(of_axle)
     before = {entry: each for entry, each in constant.items() if entry != schema.SQUEAL_SHAPE}
+    for factor, word in ((1.01, "yes"), (0.99, "on the edge, too near to be decided")):  # 0.02 % decides
+        scaled = growth * np.where(growth > 0.0, factor * 2e-4 / share.max(), 1.0)
+        assert answer(constant | {schema.GROWTH_RATE: scaled}).startswith(
+            f"Squeal: {word}, {len(shapes)} of "
+        )
     assert f"Squeal: yes, {np.sum(grows & believed)} of " in answer(before)  # of a result from before
     assert "by falling friction (linear" in answer(falling)
     assert "would stop all." in answer(falling)

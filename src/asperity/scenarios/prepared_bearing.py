@@ -17,7 +17,7 @@ from asperity.scenarios import compiling, preparing, reducing, run_time
 from asperity.scenarios.doubts import doubt_bearing
 from asperity.scenarios.problems import refuse
 from asperity.scenarios.raceway_films import films_on
-from asperity.scenarios.raceway_laws import OnRaceway
+from asperity.scenarios.raceway_laws import OnRaceway, doubt_faults
 from asperity.scenarios.raceway_limits import doubt_fault, doubt_rise, doubt_surface
 from asperity.scenarios.roller_raceways import on_surface, surface_on
 from asperity.speeds import at_fastest, slowest
@@ -154,8 +154,11 @@ def law_on_raceway(prepared: PreparedBearing, name: str, ring: str) -> Law:
 
 
 def planned_bearing(prepared: PreparedBearing, progress: Progress) -> preparing.Plan:
-    """Plan a bearing: nothing is solved for that."""
+    """Plan a bearing; nothing is solved for that but contacts over faults, where they are few."""
     rows, work = expected(prepared)
+    if work.time.parts["contacts over the faults"] <= preparing.LONG:
+        for on in raceways_of(prepared, progress):
+            doubt_faults(on, [spec_of(name) for name in prepared.case.laws])
     return preparing.Plan([*rows, ("work", work.told)], work)
 
 

@@ -574,14 +574,19 @@ def raceway_laws(
     )
 
 
+def doubt_faults(on: OnRaceway, laws: Sequence[LawSpec]) -> None:
+    """Warn of faults on a raceway that some of these laws give one height."""
+    blind = [law.name for law in laws if not law.sees_heights]
+    if on.surface.damaged.any() and blind:
+        on.warn_of_faults(blind)
+
+
 def laws_on(
     on: OnRaceway, names: Iterable[str], *, balls: Sequence[Raceway] = (), forwards: bool = True
 ) -> dict[str, Any]:
     """Laws of a ball on a raceway by their names, as from `raceway_laws`; `table` is that of all states."""
     chosen = [spec_of(name) for name in names]
-    blind = [law.name for law in chosen if not law.sees_heights]
-    if on.surface.damaged.any() and blind:
-        on.warn_of_faults(blind)
+    doubt_faults(on, chosen)
     beside_balls = replace(on, balls=balls)
     laws: dict[str, Any] = {}
     for law in chosen:

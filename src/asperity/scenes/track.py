@@ -8,6 +8,7 @@ import numpy as np
 
 from asperity import spectra
 from asperity.arguments import Array
+from asperity.case.scene import Case
 from asperity.errors import Finding, Grade, LossFactorWarning, warn_of_findings
 from asperity.reduction.texture import along_path
 from asperity.reference.railways import iso_3095_decay_rate
@@ -345,6 +346,11 @@ def pass_by_of(computed: compute.Computed) -> Values:
     return beside_track.pass_by_group(computed.case, in_bands, computed.derived(sideways_group))
 
 
+def asks_for_pass_by(case: Case) -> bool:
+    """Whether levels beside the track are computed of a case: not where its speed changes."""
+    return not isinstance(case.speed, SpeedCourse)
+
+
 def findings_of_noise(computed: compute.Computed) -> list[Finding]:
     """Hold what CNOSSOS-EU knows, and what was measured, to the track and the wheel of the case."""
     case = computed.case
@@ -377,7 +383,7 @@ PASS_BY = Observer(
     DECLARED,
     pass_by_of,
     needs=("track",),
-    asked_of=lambda computed: not isinstance(computed.case.speed, SpeedCourse),
+    asked_of=lambda computed: asks_for_pass_by(computed.case),
 )
 """What is heard beside the track."""
 
@@ -397,7 +403,7 @@ def planned_track(prepared: PreparedCase) -> list[tuple[str, str]]:
     known = "rail, sleepers and wheel"
     if reason := noise.silent_wheel(case):
         known = f"rail and sleepers: {reason}"
-    if np.ptp(prepared.textures.line) and not isinstance(case.speed, SpeedCourse):
+    if np.ptp(prepared.textures.line) and asks_for_pass_by(case):
         pads, diameter = cnossos_power.track_label(case), cnossos_power.wheel_label(case)
         known += f"; by CNOSSOS-EU for {pads} pads and a wheel of {diameter}"
         doubts += cnossos_power.findings_of_labels(case)
@@ -410,6 +416,8 @@ def planned_track(prepared: PreparedCase) -> list[tuple[str, str]]:
         frequencies = (
             f"pinned–pinned {rounded(track.pinned_pinned_frequency, 4)} Hz, {passing}, {frequencies}"
         )
+    if asks_for_pass_by(case):
+        noise.warn_of_silence(case)
     points = ", ".join(f"{position:g} m" for position in case.point_positions)
     return [
         ("track", frequencies),

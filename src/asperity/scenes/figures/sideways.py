@@ -20,6 +20,8 @@ from asperity.written_numbers import count_of, rounded
 
 FORCE = schema.LATERAL_FORCE_LEVEL
 _DOTS = (1.5, 1.5)
+UNDECIDED = 2e-4
+"""Share of critical damping by which growth says nothing: that of wheels is known no better."""
 
 
 @figure(
@@ -244,9 +246,10 @@ def creep_answers(tree: DataTree) -> headline.Answers | None:
     cause = "falling friction" if falls else "mode coupling"
     fastest = ", ".join(_named(tree, n) for n in shapes[:3])
     ratio = max(float(growth[n] / (2.0 * np.pi * frequency[n])) for n in growing)
+    decided = "yes" if ratio >= UNDECIDED else "on the edge, too near to be decided"
     more = (
-        f"Squeal: yes, {len(shapes)} of {modes} grow, by {cause} (linear stability); fastest {fastest}, "
-        f"the first e-fold in {data.engineering(1.0 / growth[growing[0]], 's')}; about "
+        f"Squeal: {decided}, {len(shapes)} of {modes} grow, by {cause} (linear stability); fastest "
+        f"{fastest}, the first e-fold in {data.engineering(1.0 / growth[growing[0]], 's')}; about "
         f"{rounded(100.0 * ratio, 2)} % more of critical damping would stop all.{aside}"
     )
     return headline.Answers(more=more)
