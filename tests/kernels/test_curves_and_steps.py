@@ -1,11 +1,15 @@
 """Splines, cubic pieces, steps of modes and transforms, against other programs; pressures to start from."""
 
+import ast
+from pathlib import Path
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from scipy.interpolate import CubicSpline, PchipInterpolator
 from scipy.linalg import expm
 
+from asperity.kernels import stepping
 from asperity.kernels.curves import shape_preserving, splines_along
 from asperity.kernels.fourier import factors, roots, smooth_length, transform
 from asperity.kernels.lanes import width
@@ -131,3 +135,17 @@ def test_starts_are_corrected_by_what_was_wrong_before():
     found, last, before = np.full((2, 3), 5.0), np.full((2, 3), 3.0), np.full((2, 3), 2.0)
     assert misfits(found, last, last, before, 2.0) == (24.0, 0.0)
     assert misfits(found, found, before, last, 4.0) == (0.0, 150.0)  # a line ends where pressure does
+
+
+def test_kernels_call_others_with_arguments_one_by_one():
+    """Beside a tuple that is unpacked numba hands functions on by address, and says so at a first run."""
+    unpacking = [
+        f"{source.name}: {ast.unparse(each)}"
+        for source in Path(stepping.__file__).parent.glob("*.py")
+        for function in ast.parse(source.read_text(encoding="utf-8")).body
+        if isinstance(function, ast.FunctionDef)
+        and any(ast.unparse(each).startswith("compiled(") for each in function.decorator_list)
+        for each in ast.walk(function)
+        if isinstance(each, ast.Call) and any(isinstance(given, ast.Starred) for given in each.args)
+    ]
+    assert not unpacking

@@ -152,8 +152,10 @@ def solve_prepared(laws, k, step, free, load, guess, again):  # type: ignore[no-
         stack.bilateral[k], stack.datum[k], stack.damping[k], stack.damped_in_flight[k], stack.upper[k],
         SeriesFilm(stack.film[k, 0], stack.film[k, 1], stack.film[k, 2]),
     )  # fmt: skip
-    damper = law.damping, law.damped_in_flight
-    return solve_law(evaluate, law, law.film, step, free, load, guess, *damper, FORCE_TOLERANCE, again)
+    return solve_law(
+        evaluate, law, law.film, step, free, load, guess, law.damping, law.damped_in_flight, FORCE_TOLERANCE,
+        again,
+    )  # fmt: skip
 
 
 @compiled(**INNER, **REASSOCIATE)
