@@ -11,6 +11,7 @@ from asperity.diagnostics.envelopes import analytic_signal, mean_spectrum, prewh
 from asperity.diagnostics.kurtogram import Kurtogram
 from asperity.diagnostics.lines import STANDS_OUT
 from asperity.diagnostics.prominence import LOWEST_PLACE, SPREAD, Prominence
+from asperity.diagnostics.pure_tones import beat
 from asperity.diagnostics.recording import SignalPieces
 from asperity.progress import Progress, counted
 
@@ -159,7 +160,8 @@ class BearingRecord:
             return np.abs(analytic_signal(level * prewhitened(block, rate), rate, 0.0, 0.5 * rate))
 
         def ringing(block: Array) -> Array:
-            return np.abs(analytic_signal(block, rate, *limits))
+            heard = prewhitened(block, rate) if beat(block, rate, limits) else block
+            return np.abs(analytic_signal(heard, rate, *limits))
 
         def seen(view: Callable[[Array], Array], what: str) -> Iterator[Array]:
             return counted(pieces.seen(view, step), len(pieces), what, progress)

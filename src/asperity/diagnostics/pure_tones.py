@@ -1,5 +1,5 @@
-"""Records that hold tones alone: nothing beside a few lines but what rounding leaves, against which no line
-stands out."""
+"""Tones: records that hold a few of them alone, beside what rounding leaves, and bands that few of them make,
+whose envelope is their beat."""
 
 import numpy as np
 from scipy.fft import rfft
@@ -8,10 +8,15 @@ from asperity.arguments import Array
 from asperity.diagnostics.missing_samples import BLOCK, least_step
 from asperity.spectra import hann_window
 
-MOST_TONES = 5
+MOST_TONES = 8
+"""That are told as such: of more, what comes with each turn is a blow, too."""
+FEW_TONES = 5
 """Lines of a band, of which the envelope has no comb of five harmonics: that takes one more."""
 SHARE = 0.01
 """Of the mean square that may lie beside them."""
+BEATS = 0.75
+"""Of the mean square of a band that so many tones have, from which on its envelope is their beat: those of
+measured blows have half of it at most."""
 SHARP = 4
 """Power of the Hann window: beside the lobe of a line, five places wide either way, it leaves next to
 nothing."""
@@ -32,20 +37,43 @@ def tones_alone(signal: Array, rate: float, *, clipped: bool = False) -> tuple[f
 
     Squared lines of noise of variance σ² scatter about σ² with the median σ² ln 2. A record holds tones alone
     where in every part of its spectrum that is as small as what rounding leaves, and all but a hundredth of
-    its mean square lies in five lines: a train of blows without noise has more. Of a clipped one what lies
+    its mean square lies in eight lines: a train of blows without noise has more. Of a clipped one what lies
     beside them is what clipping makes of them, folded at half the sampling rate.
     """
-    values = signal[:BLOCK] - signal[:BLOCK].mean()
-    window = hann_window(values.size, centred=True) ** SHARP
-    power = np.abs(rfft(values * window)) ** 2 / (window**2).sum()
+    values = signal[:BLOCK]
+    power = _lines(values)
     parts = np.array_split(power, min(max(power.size // WIDE, 1), BLOCKS))
     noise = np.sqrt(max(np.median(part) for part in parts) / np.log(2.0))
     if not clipped and noise > ROUNDING * max(least_step(signal), LEAST_STEP * float(values.std())):
         return ()
-    found = []
-    all_of_them = power.sum()
-    while power.sum() > SHARE * all_of_them:
-        at = int(power.argmax())
-        found.append(at * rate / values.size)
-        power[max(at - LOBE, 0) : at + LOBE + 1] = 0.0
-    return tuple(found) if len(found) <= MOST_TONES else ()
+    places, left = _loudest(power, MOST_TONES)
+    return tuple(at * rate / values.size for at in places) if left <= SHARE else ()
+
+
+def beat(signal: Array, rate: float, band: tuple[float, float]) -> bool:
+    """Whether a few tones make a band of a signal (n,), as of a gear: its envelope is their beat, no blow.
+
+    Blows have a line at each of their multiples, as far as what rings reaches.
+    """
+    values = signal[:BLOCK]
+    first, last = (int(edge * values.size / rate) for edge in band)
+    return _loudest(_lines(values)[first : last + 1], FEW_TONES)[1] <= 1.0 - BEATS
+
+
+def _lines(values: Array) -> Array:
+    """Squares of the lines of a signal (n,) by a window that leaves next to nothing beside them."""
+    window = hann_window(values.size, centred=True) ** SHARP
+    return np.asarray(np.abs(rfft((values - values.mean()) * window)) ** 2 / (window**2).sum())
+
+
+def _loudest(power: Array, most: int) -> tuple[list[int], float]:
+    """Places of the loudest lines that have all but a hundredth, so many at most, and the share of the
+    rest."""
+    left = power.copy()
+    whole = power.sum()
+    places = list[int]()
+    while len(places) < most and left.sum() > SHARE * whole:
+        at = int(left.argmax())
+        places.append(at)
+        left[max(at - LOBE, 0) : at + LOBE + 1] = 0.0
+    return places, float(left.sum() / whole) if whole > 0.0 else 1.0

@@ -10,7 +10,7 @@ from asperity.arguments import Array, ArrayLike, positive, real_array, require
 from asperity.diagnostics.foretold import unforetold
 from asperity.diagnostics.missing_samples import BLOCK, Mask, Runs, begins_run, filled_in, runs
 from asperity.diagnostics.phase_jumps import lost_between
-from asperity.diagnostics.pure_tones import tones_alone
+from asperity.diagnostics.pure_tones import beat, tones_alone
 from asperity.spectra import hann_window, quick_length
 from asperity.written_numbers import count_of, rounded
 
@@ -36,6 +36,10 @@ OFFSET = 1.0
 """Mean over the rms about it from which on it is told."""
 HOLDS_TONES = 512
 """Samples of a stretch, at least, by which it is known that it holds tones alone."""
+CLICK = 1.5
+"""Of the size that loud tones reach so seldom, from which on it is no top of theirs."""
+FADED = 0.05
+"""Share of a piece at either end that is faded."""
 SELDOM = 0.5
 """Times in a turn at most that something happens which is no blow of a part."""
 SAMPLE = 2**14
@@ -101,13 +105,13 @@ class SignalPieces:
     ----------
     size : int
         Samples of each.
-    cut : tuple of (ndarray (n,), float, float)
-        Samples of each as they were measured, the mean of their stretch, which is taken off, and the size to
-        which it is limited then.
+    cut : tuple of (ndarray (n,), float, float, bool)
+        Samples of each as they were measured, the mean of their stretch, which is taken off, the size to
+        which it is limited then, and whether its ends are faded.
     """
 
     size: int
-    cut: tuple[tuple[Array, float, float], ...]
+    cut: tuple[tuple[Array, float, float, bool], ...]
 
     @classmethod
     def of(
@@ -118,20 +122,23 @@ class SignalPieces:
         Their length is that of the shortest that has half the length of the longest one, or a part of it;
         what is shorter is left out, and of a long one what makes it slow to transform: a prime length takes
         three times as long. What is larger than a stretch reaches once in two turns is no blow that recurs: a
-        single click, as of a loose cable, would be all that a spectrum shows.
+        single click, as of a loose cable, would be all that a spectrum shows. So would the ends of loud tones,
+        which do not meet: they are faded.
         """
         most = max(each.size for each in stretches)
         size = min(each.size for each in stretches if each.size >= 0.5 * most)
         size //= int(np.ceil(size / longest))
         if size > SLOW:
             size = quick_length(size)
-        cut = list[tuple[Array, float, float]]()
+        cut = list[tuple[Array, float, float, bool]]()
         for each in stretches:
             mean = float(each.mean())
             turns = each.size / rate * speed
+            loud = bool(speed) and beat(each, rate, (0.0, 0.5 * rate))
             reached = _reached(each, mean, max(int(SELDOM * turns), 1)) if speed else np.inf
+            reached *= CLICK if loud else 1.0
             parts = (each[n * size : (n + 1) * size] for n in range(each.size // size))
-            cut += [(part, mean, reached) for part in parts]
+            cut += [(part, mean, reached, loud) for part in parts]
         return cls(size, tuple(cut))
 
     def __len__(self) -> int:
@@ -169,12 +176,19 @@ class SignalPieces:
             yield view(_limited(*each)) if step == 1 else _thinned(*each, view, step)
 
 
-def _limited(samples: Array, mean: float, reached: float) -> Array:
-    """Samples less a mean, within a size."""
-    return np.clip(samples - mean, -reached, reached)
+def _limited(samples: Array, mean: float, reached: float, faded: bool) -> Array:
+    """Samples less a mean, within a size, and faded at their ends."""
+    limited = np.clip(samples - mean, -reached, reached)
+    if faded:
+        fading = hann_window(2 * int(FADED * samples.size), centred=True)
+        limited[: fading.size // 2] *= fading[: fading.size // 2]
+        limited[limited.size - fading.size // 2 :] *= fading[fading.size // 2 :]
+    return limited
 
 
-def _thinned(samples: Array, mean: float, reached: float, view: Callable[[Array], Array], step: int) -> Array:
+def _thinned(
+    samples: Array, mean: float, reached: float, faded: bool, view: Callable[[Array], Array], step: int
+) -> Array:
     """What a view makes of samples (n,), at one of so many of them, as `SignalPieces.seen` has it."""
     from scipy.fft import irfft, rfft
 
@@ -183,7 +197,7 @@ def _thinned(samples: Array, mean: float, reached: float, view: Callable[[Array]
     fading = hann_window(2 * half, centred=True)
     total, weight = np.zeros((2, halves * half))
     for first in range(0, (halves - 1) * half, half):
-        block = _limited(samples[first * step : (first + 2 * half) * step], mean, reached)
+        block = _limited(samples[first * step : (first + 2 * half) * step], mean, reached, faded)
         kept = slice(first, first + 2 * half)
         total[kept] += fading * irfft(rfft(view(block))[: half + 1], 2 * half)
         weight[kept] += fading
