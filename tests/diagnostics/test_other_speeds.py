@@ -34,6 +34,18 @@ def test_a_speed_whose_multiples_or_parts_have_the_lines_is_not_confirmed(factor
     assert diagnose(signal, RATE, TONES, SPEED * factor).speed_is != "confirmed"
 
 
+def test_a_speed_four_times_as_fast_whose_lines_are_clearer_is_told():
+    """Faint lines at the multiples of a quarter of the speed: a quarter of it was believed."""
+    time = np.arange(48_000) / RATE
+    faint = sum(np.sin(0.5 * np.pi * SPEED * n * time + n) for n in range(1, 12))
+    loud = sum(np.sin(2.0 * np.pi * SPEED * n * time + n) for n in range(1, 12))
+    noise = 0.3 * np.random.default_rng(1).normal(size=time.size)
+    found = diagnose(0.02 * faint + 0.2 * loud + noise, RATE, TONES, 0.25 * SPEED)
+    assert found.speed_is == "unconfirmed"
+    assert any(each == pytest.approx(SPEED, rel=0.01) for each in found.others)
+    assert " Hz (439.5 1/min) or " not in diagnosis_sentence(found).split(";")[0]
+
+
 def test_what_else_the_speed_may_be_is_said():
     """Every second multiple alone: of the double all lines are there."""
     found = diagnose(shaft_alone(range(2, 21, 2)), RATE, TONES, SPEED)
@@ -94,17 +106,14 @@ def test_of_measured_records_no_wrong_speed_has_a_confident_part_that_is_not_str
 
 @measured
 def test_sound_bearings_have_no_confirmed_speed_at_half_and_at_double():
-    """But for one whose second, fourth, … lines alone are loud, and one with lines of its half."""
-    unknowable = {"mfs_Normal_600": [2.0], "mfs_Normal_1200": [0.5]}
+    """One whose second, fourth, … lines alone are loud, and one with lines of its half, were believed."""
     with np.load(DATA) as data:
         for name in (each for each in data.files if "Normal" in each):
             speed = float(name.split("_")[-1]) / 60.0
-            confirmed = []
-            for factor in (0.5, 1.5, 2.0, 2.5, 3.0, 4.0):
+            for factor in (0.25, 0.5, 1.5, 2.0, 2.5, 3.0, 4.0):
                 found = diagnose(data[name].astype(float), 51_200.0, TONES, speed * factor)
                 assert not found.parts, (name, factor)
-                confirmed += [factor] * (found.speed_is == "confirmed")
-            assert confirmed == unknowable.get(name, []), name
+                assert found.speed_is != "confirmed", (name, factor)
 
 
 def test_a_comb_is_no_deeper_than_its_own_lines_beside_those_of_a_deeper_one():

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from asperity.arguments import Array
-from asperity.diagnostics.hypotheses import DEEP, FINE, NEAR, BearingRecord, Hypothesis, Tone
+from asperity.diagnostics.hypotheses import BETTER, DEEP, FINE, NEAR, BearingRecord, Hypothesis, Tone
 
 SUPPORTED = 15.0
 """Support from which on the shaft is believed to be where it is sought: of a wrong speed one in ten has
@@ -15,8 +15,11 @@ APART = 0.06
 ODD = 8.0
 """Support that the odd multiples of a speed alone must have: half of the true one has none, and lines between
 the multiples that have it are those of a slower shaft."""
-TIMES = (2, 3)
-"""Multiples and parts of a speed that are taken for another one by their own lines."""
+OWN = 12.0
+"""Support that the lines of a speed must have that its double or its threefold has not."""
+TIMES, MULTIPLES = (2, 3), (2, 3, 4)
+"""Multiples and parts of a speed that are taken for another one by their own lines, and multiples that are
+where theirs are clearer."""
 SHARES = (1.0 / 3.0, 0.5, 2.0 / 3.0, 0.75, 4.0 / 3.0, 1.5)
 """Speeds that have half of the lines of a speed, a third or a quarter: over that speed."""
 MAINS = (50.0, 60.0, 100.0, 120.0)
@@ -57,11 +60,10 @@ def shaft_near(
     spans = [share * near for share in SHARES]
     spans += [here / np.arange(part.lowest, part.highest, FINE * part.order) for part in tones.values()]
     others = [float(span[span.size // 2]) for span in spans if support(span).max() > clear[at]]
-    for times in TIMES:
-        own = support(near, times).max()
-        clearer = support(times * near).max() > clear[at]
-        others += [times * here] * bool(own < (SUPPORTED if clearer else ODD))
-        others += [here / times] * bool(support(np.array([here / times]), times)[0] >= ODD)
+    clearer = [times for times in MULTIPLES if support(times * near).max() > clear[at] + BETTER]
+    fewer = [times for times in TIMES if support(near, times).max() < OWN]
+    others += [times * here for times in {*clearer, *fewer}]
+    others += [here / times for times in TIMES if support(near / times, times).max() >= ODD]
     return here, float(clear[at]), tuple(sorted(set(others)))
 
 

@@ -115,7 +115,7 @@ def _of_speed(found: Diagnosis) -> list[str]:
         return [f"{short} {line}: the speed is not confirmed."]
     if found.others and not found.blows:
         nearest = sorted(found.others, key=lambda each: abs(math.log(each / found.told)))[:2]
-        others = " and ".join(turns(each) for each in sorted(nearest))
+        others = " or ".join(turns(each) for each in sorted(nearest))
         return [f"Lines of the shaft are at {turns(found.told)}; a shaft at {others} would have them, too."]
     missed = f"The line of the shaft is not found at {turns(found.told)}"
     if found.blows:
