@@ -290,7 +290,7 @@ SOUND = Diagnosis(30.0, 30.0, "confirmed", (), (), None, 0.0, (), BASIS, 0.25, S
         ),
         (
             {"speed_is": "unconfirmed", "others": (15.0, 60.0)},
-            "Lines of the shaft are at 30 Hz (1800 1/min); a shaft at 15 Hz (900 1/min) and 60 Hz (3600 "
+            "Lines of the shaft are at 30 Hz (1800 1/min); a shaft at 15 Hz (900 1/min) or 60 Hz (3600 "
             "1/min) would have them, too. No lines of rings or balls stand out: no sign of a fault, "
             "83 % sure.",
         ),

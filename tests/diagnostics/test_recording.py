@@ -150,7 +150,7 @@ def test_pieces_are_as_long_as_the_shortest_that_is_half_of_the_longest():
 
 def test_what_recurs_seldom_is_limited_to_what_recurs_once_in_two_turns():
     """Twenty turns: ten samples of 5 are reached, one of 100 is a click."""
-    values = np.tile([1.0, -1.0], 500)
+    values = np.sign(np.random.default_rng(0).normal(size=1_000))
     values[50::100] = 5.0
     values[3] = 100.0
     values -= values.mean()

@@ -12,7 +12,8 @@ PARTS, PART = 32, 20 * ORDER
 QUIET = 0.01
 """Of the median size of the signal, that what is not foretold may have for tones to make it."""
 UNLIKE = 30.0
-"""Times the median of what is not foretold, from which on something happened."""
+FAINTER = 20.0
+"""Times the median of what is not foretold, from which on something happened, and where it did, others did."""
 
 
 def unforetold(values: Array, most: float) -> Runs:
@@ -25,12 +26,13 @@ def unforetold(values: Array, most: float) -> Runs:
     usual = float(np.median([np.abs(np.convolve(part, weights, "valid")) for part in parts]))
     if usual > QUIET * float(np.median(np.abs(parts - np.mean(parts)))):
         return joined([])
-    unlike = np.zeros(max(values.size - ORDER, 1), dtype=bool)
+    unlike = np.zeros((2, max(values.size - ORDER, 1)), dtype=bool)
+    limits = np.array([[UNLIKE], [FAINTER]]) * usual
     for first in range(0, values.size - ORDER, BLOCK):
         part = values[first : first + BLOCK + ORDER]
         missed = np.abs(np.convolve(part, weights, "valid"))
-        unlike[first : first + missed.size] = missed > UNLIKE * usual
-    stretches = joined([(first, last + ORDER) for first, last in runs(unlike)])
+        unlike[:, first : first + missed.size] = missed > limits
+    stretches = joined([(first, last + ORDER) for first, last in runs(unlike[int(unlike[0].any())])])
     return stretches if len(stretches) <= most else joined([])
 
 

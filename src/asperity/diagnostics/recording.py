@@ -38,7 +38,7 @@ HOLDS_TONES = 512
 """Samples of a stretch, at least, by which it is known that it holds tones alone."""
 CLICK = 1.5
 """Of the size that loud tones reach so seldom, from which on it is no top of theirs."""
-FADED = 0.05
+FADED = 0.25
 """Share of a piece at either end that is faded."""
 SELDOM = 0.5
 """Times in a turn at most that something happens which is no blow of a part."""
