@@ -179,11 +179,14 @@ class SignalPieces:
 def _limited(samples: Array, mean: float, reached: float, faded: bool) -> Array:
     """Samples less a mean, within a size, and faded at their ends."""
     limited = np.clip(samples - mean, -reached, reached)
-    if faded:
-        fading = hann_window(2 * int(FADED * samples.size), centred=True)
-        limited[: fading.size // 2] *= fading[: fading.size // 2]
-        limited[limited.size - fading.size // 2 :] *= fading[fading.size // 2 :]
-    return limited
+    return limited * _fading(samples.size, 0, samples.size) if faded else limited
+
+
+def _fading(size: int, first: int, last: int) -> Array:
+    """Weights of some of so many samples, (last - first,): squared sines at both ends."""
+    place = np.arange(first, last) + 0.5
+    share = np.minimum(place, size - place) / (FADED * size)
+    return np.asarray(np.sin(0.5 * np.pi * np.minimum(share, 1.0)) ** 2)
 
 
 def _thinned(
@@ -197,7 +200,10 @@ def _thinned(
     fading = hann_window(2 * half, centred=True)
     total, weight = np.zeros((2, halves * half))
     for first in range(0, (halves - 1) * half, half):
-        block = _limited(samples[first * step : (first + 2 * half) * step], mean, reached, faded)
+        places = slice(first * step, (first + 2 * half) * step)
+        block = _limited(samples[places], mean, reached, False)
+        if faded:
+            block *= _fading(samples.size, places.start, places.start + block.size)
         kept = slice(first, first + 2 * half)
         total[kept] += fading * irfft(rfft(view(block))[: half + 1], 2 * half)
         weight[kept] += fading
