@@ -15,8 +15,6 @@ APART = 0.06
 ODD = 8.0
 """Support that the odd multiples of a speed alone must have: half of the true one has none, and lines between
 the multiples that have it are those of a slower shaft."""
-OWN = 12.0
-"""Support that the lines of a speed must have that its double or its threefold has not."""
 TIMES, MULTIPLES = (2, 3), (2, 3, 4)
 """Multiples and parts of a speed that are taken for another one by their own lines, and multiples that are
 where theirs are clearer."""
@@ -61,7 +59,7 @@ def shaft_near(
     spans += [here / np.arange(part.lowest, part.highest, FINE * part.order) for part in tones.values()]
     others = [float(span[span.size // 2]) for span in spans if support(span).max() > clear[at]]
     clearer = [times for times in MULTIPLES if support(times * near).max() > clear[at] + BETTER]
-    fewer = [times for times in TIMES if support(near, times).max() < OWN]
+    fewer = [times for times in TIMES if support(near, times).max() < ODD]
     others += [times * here for times in {*clearer, *fewer}]
     others += [here / times for times in TIMES if support(near / times, times).max() >= ODD]
     return here, float(clear[at]), tuple(sorted(set(others)))
