@@ -13,7 +13,8 @@ QUIET = 0.01
 """Of the median size of the signal, that what is not foretold may have for tones to make it."""
 UNLIKE = 30.0
 FAINTER = 20.0
-"""Times the median of what is not foretold, from which on something happened, and where it did, others did."""
+"""Times the median of what is not foretold, from which on something happened, and where it did, others
+did."""
 
 
 def unforetold(values: Array, most: float) -> Runs:

@@ -122,8 +122,8 @@ class SignalPieces:
         Their length is that of the shortest that has half the length of the longest one, or a part of it;
         what is shorter is left out, and of a long one what makes it slow to transform: a prime length takes
         three times as long. What is larger than a stretch reaches once in two turns is no blow that recurs: a
-        single click, as of a loose cable, would be all that a spectrum shows. So would the ends of loud tones,
-        which do not meet: they are faded.
+        single click, as of a loose cable, would be all that a spectrum shows. So would the ends of loud
+        tones, which do not meet: they are faded.
         """
         most = max(each.size for each in stretches)
         size = min(each.size for each in stretches if each.size >= 0.5 * most)
