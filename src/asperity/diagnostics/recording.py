@@ -164,7 +164,11 @@ class SignalPieces:
         count = self.block_count // len(self)
         size = self.size // count
         parts = (slice(n * size, (n + 1) * size) for n in range(count))
-        return (_limited(samples[part], *rest) for part in parts for samples, *rest in self.cut)
+        return (
+            _limited(samples[part], mean, reached, faded)
+            for part in parts
+            for samples, mean, reached, faded in self.cut
+        )
 
     def seen(self, view: Callable[[Array], Array], step: int) -> Iterator[Array]:
         """Return what a view (n,) -> (n,) makes of each, at one of so many samples: 1 for all of them.
