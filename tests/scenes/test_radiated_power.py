@@ -91,7 +91,7 @@ def test_a_check_says_whose_sound_power_is_computed():
         assert "by CNOSSOS-EU for hard pads" in told["sound power"]
 
 
-CASE = HEARD | {"duration": "0.3 s"}
+CASE = HEARD | {"duration": "0.15 s"}
 MODES = np.array(
     [  # frequency, damping ratio, modal mass, nodal diameters, axial, radial
         [430.0, 1e-2, 3000.0, 2, 3.0, 0.5],

@@ -268,10 +268,14 @@ def test_what_new_prints_of_a_bearing_runs_and_says_which_part_is_heard(kind):
 
 @pytest.mark.usefixtures("in_cache_of_runs")  # the ball's scans are those of the bodies
 @pytest.mark.parametrize(
-    "kind", [pytest.param(kind, marks=[pytest.mark.long] * (kind != "wheel-on-rail")) for kind in CASES]
+    ("kind", "keys"),
+    [
+        ("wheel-on-rail", {"duration": 0.4}),
+        *(pytest.param(kind, {}, marks=pytest.mark.long) for kind in CASES),
+    ],
 )
-def test_what_new_prints_runs_with_all_checks_in_range(kind):
-    tree = asperity.run(parse_case(template(kind)))
+def test_what_new_prints_runs_with_all_checks_in_range(kind, keys):
+    tree = asperity.run(parse_case(template(kind)).with_(**keys))
     assert [w for w in json.loads(tree.attrs["warnings"]) if w["grade"] != "note"] == []
     checks = json.loads(tree["contact"].attrs["validity"])
     assert len(checks) > 5

@@ -66,7 +66,7 @@ def test_nothing_is_most_of_nothing():
 
 
 def test_one_accelerometer_needs_no_name():
-    alone = asperity.run(BEARING | {"duration": "50 ms"})
+    alone = asperity.run(BEARING | {"duration": "50 ms"}, brief=True)
     assert bearing_answers(alone).lead.startswith("Radial velocity by hertz: ")
     assert {each.note for each in bearing_answers(alone).numbers[:3]} == {"rms radial velocity, outer ring"}
     assert json.loads(alone["contact"].attrs["validity"])
