@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 sys.path.extend([str(Path(__file__).parent), str(Path(__file__).parents[1] / "surfaces")])
-from program import RUN, outcome, prepared
+from program import finished, prepared
 
 
 def pytest_collection_modifyitems(items):
@@ -19,5 +19,5 @@ def pytest_collection_modifyitems(items):
 def undisturbed(tmp_path_factory):
     """A folder with a finished run."""
     folder = prepared(tmp_path_factory.mktemp("undisturbed"))
-    assert outcome(folder, *RUN)[0] == 0
+    finished(folder)
     return folder
