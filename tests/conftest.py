@@ -80,8 +80,8 @@ def pytest_unconfigure():
     _cache.cleanup()
 
 
-@pytest.fixture(autouse=True)
-def files_opened_here(monkeypatch):
+@pytest.fixture(scope="module", autouse=True)
+def files_opened_here():
     """Results and modes of tests are their own: only what cannot be read is opened in a sandbox.
 
     `test_results.py` and `faults` open all results in one.
@@ -97,8 +97,10 @@ def files_opened_here(monkeypatch):
         answer.seek(0)
         return sandbox.received(answer)
 
-    for module in ("results", "structures.modal_files"):
-        monkeypatch.setattr(f"asperity.{module}.sandboxed", opened)
+    with pytest.MonkeyPatch.context() as patch:
+        for module in ("results", "structures.modal_files"):
+            patch.setattr(f"asperity.{module}.sandboxed", opened)
+        yield
 
 
 @pytest.fixture

@@ -13,6 +13,7 @@ from asperity.results import read_result
 from asperity.terminal import json_ready
 from command_line import SMALL, call, working_in
 
+pytestmark = pytest.mark.usefixtures("members_in_this_process")
 DOCUMENT = Path(__file__).parents[2] / "docs" / "reference" / "json.md"
 
 

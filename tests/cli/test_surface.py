@@ -229,9 +229,11 @@ print((peaks[1] - peaks[0]) / surface.heights.nbytes)
 def test_numbers_of_a_text_are_never_held_twice(columns):
     """Neither as they were written nor in another unit; beside them stands the text, a quarter of them."""
     digits = np.random.default_rng(0).integers(0, 10, (4_000_000 // columns, columns))
-    lines = [b" ".join(row) for row in digits.astype("S1")]
-    Path("many.txt").write_bytes(b"\n".join(lines))
-    Path("few.txt").write_bytes(b"\n".join(lines[:20_000]))
+    written = np.full((*digits.shape, 2), ord(" "), np.uint8)
+    written[..., 0] = ord("0") + digits
+    written[:, -1, 1] = ord("\n")
+    Path("many.txt").write_bytes(written.tobytes())
+    Path("few.txt").write_bytes(written[:20_000].tobytes())
     few = read_surface("few.txt", height_unit="nm", pixel="1 um").heights
     np.testing.assert_array_equal(few.reshape(-1, columns), 1e-9 * digits[:20_000])
     told = subprocess.run([sys.executable, "-c", READING], capture_output=True, text=True, check=True)
