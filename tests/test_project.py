@@ -4,9 +4,8 @@ import ast
 import importlib.util
 import json
 import re
+import runpy
 import statistics
-import subprocess
-import sys
 import tomllib
 from pathlib import Path
 
@@ -296,7 +295,8 @@ def test_commands_that_pages_lead_to_exist_with_their_options():
 def test_the_first_lines_in_python_run(tmp_path, monkeypatch, capsys):
     (snippet,) = re.findall(r"```python\n(.*?)```", text("docs/start/index.md"), re.DOTALL)
     monkeypatch.chdir(tmp_path)
-    exec(snippet, {})
+    (tmp_path / "first.py").write_text(snippet, encoding="utf-8")
+    runpy.run_path("first.py")
     told = capsys.readouterr().out
     assert "the contact force varies by " in told
     assert (tmp_path / "force.png").stat().st_size > 10_000
