@@ -30,10 +30,16 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
     Complex = NDArray[np.complex128]
+    Flags = NDArray[np.bool_]
+    Indices = NDArray[np.intp]
+    Integers = NDArray[np.int64]
 else:  # names alone: help() would spell out what NumPy makes of them, in a hundred words
     ArrayLike = NewType("ArrayLike", object)
     Array = NewType("Array", np.ndarray)
     Complex = NewType("Complex", np.ndarray)
+    Flags = NewType("Flags", np.ndarray)
+    Indices = NewType("Indices", np.ndarray)
+    Integers = NewType("Integers", np.ndarray)
 
 
 def as_row(values: "ArrayLike") -> "Array":

@@ -10,7 +10,7 @@ import numpy as np
 import xarray
 from xarray import DataTree
 
-from asperity.arguments import Array, NDArray
+from asperity.arguments import Array, Flags, NDArray
 from asperity.case.any_case import AnyCase, ReadyCase, function_named
 from asperity.case.form import case_key, content, file_digest
 from asperity.errors import AsperityError, CaseError, InputError, PhysicsWarning
@@ -236,7 +236,7 @@ def convergence_group(result: DataTree, found: Sequence[Comparison]) -> xarray.D
     return group(laid_out | {convergence.SENTENCE: sentence(group(laid_out), laws[0])})
 
 
-def _largest(change: Array, shown: NDArray[np.bool_]) -> tuple[float, int | None]:
+def _largest(change: Array, shown: Flags) -> tuple[float, int | None]:
     """Largest size of a change in the bands that are compared, and its place."""
     size = np.where(shown & np.isfinite(change), np.abs(change), -1.0)
     at = int(size.argmax())

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import scipy
 
-from asperity.arguments import Array, ArrayLike, NDArray, require
+from asperity.arguments import Array, ArrayLike, Flags, require
 from asperity.case.sideways import INCLINATIONS
 from asperity.errors import InputError, PhysicsWarning
 from asperity.structures.outline import HIGHEST_FLANGE
@@ -171,7 +171,7 @@ def _refuse_strange_flange(key: str, section: Profile, y: Array, side: int) -> N
     require(section.start is None or low <= top <= high, key, received, allowed, remedy)
 
 
-def _slope(y: Array, z: Array, here: NDArray[np.bool_]) -> float:
+def _slope(y: Array, z: Array, here: Flags) -> float:
     """Slope of a section at some of its points (n,), m; 0 where it has fewer than two."""
     return float(np.polynomial.polynomial.polyfit(y[here], z[here], 1)[1]) if here.sum() > 1 else 0.0
 
@@ -346,7 +346,7 @@ def _levelled(section: Profile, y: Array, flanged: bool) -> tuple[Array, Array]:
     if section.start is None:
         rest = y[np.abs(_away_from_rest(y, z)) < FLANGE]
         y = y - 0.5 * (rest[0] + rest[-1])
-    tread: NDArray[np.bool_] = np.abs(y) <= TREAD
+    tread: Flags = np.abs(y) <= TREAD
     if tread.sum() > 1:
         offset, slope = np.polynomial.polynomial.polyfit(y[tread], z[tread], 1)
         z = z - (offset + slope * y)

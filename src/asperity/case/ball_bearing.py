@@ -213,8 +213,9 @@ class BearingUnderLoad(AnyCase):
     @property
     def title(self) -> str:
         """Say what runs."""
-        name = "Ball bearing" if self.bearing.name is None else f"Ball bearing {self.bearing.name}"
-        return f"{name} at {span_of(self.speed, 60.0)} 1/min"
+        name = f" {self.bearing.name}" if self.bearing.name else ""
+        element = self.bearing.bearing.ELEMENT.capitalize()
+        return f"{element} bearing{name} at {span_of(self.speed, 60.0)} 1/min"
 
     @cached_property
     def static(self) -> LoadedBearing:

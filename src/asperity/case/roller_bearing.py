@@ -13,7 +13,6 @@ from asperity.case.lubricant import RollerLubricantKeys
 from asperity.case.named_bearing import NamedBearing
 from asperity.case.ready_lists import IN_ROLLER_BEARINGS, NamedChanges, listed_changes
 from asperity.case.sections import DURATION
-from asperity.case.speed import span_of
 from asperity.errors import InputError
 from asperity.laws import LawSpec, Need, spec_of
 from asperity.parameters import Choice, Flag, ListOf, Quantity, key, keys_of, optional
@@ -169,12 +168,6 @@ class RollerBearingUnderLoad(BearingUnderLoad):
     def helping_changes(self) -> NamedChanges:
         """Changes that may make it quieter: clearance, crowning, waves of each part, speed, …."""
         return listed_changes(IN_ROLLER_BEARINGS)
-
-    @property
-    def title(self) -> str:
-        """Say what runs."""
-        name = "Roller bearing" if self.bearing.name is None else f"Roller bearing {self.bearing.name}"
-        return f"{name} at {span_of(self.speed, 60.0)} 1/min"
 
     def problems(self) -> Iterator[InputError]:
         """Laws that rollers have; and what holds of any bearing."""

@@ -12,7 +12,7 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from asperity.arguments import Array, NDArray, listed
+from asperity.arguments import Array, Flags, NDArray, listed
 from asperity.case.form import name_of
 from asperity.case.table_headings import (
     MOST_HEADING,
@@ -191,9 +191,7 @@ def read_mode_table(table: TableSource) -> Array:
     return rows
 
 
-def refuse_where(
-    table: TableSource, values: Array, wrong: NDArray[np.bool_], what: str, allowed: str
-) -> None:
+def refuse_where(table: TableSource, values: Array, wrong: Flags, what: str, allowed: str) -> None:
     """Refuse the first of the values of a table that are wrong, if there is one."""
     if wrong.any():
         raise InputError(name_of(table), f"{what} of {values[wrong][0]:g}", allowed)

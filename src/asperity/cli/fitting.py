@@ -140,11 +140,10 @@ def _say(found: Fitted) -> None:
     """Say what is not known, then what was found."""
     for sentence in found.open_sentences:
         say(capital(sentence))
-    rows = []
-    for each in found.estimates:
-        interval = " to ".join(map(each.free.words, each.interval)) if each.interval else "on its limit"
-        before = each.free.words(each.free.before) if each.free.given else "–"
-        rows.append((each.name, before, each.free.words(each.value), interval))
+    rows = [
+        (each.name, each.before_in_words, each.free.words(each.value), each.interval_in_words)
+        for each in found.estimates
+    ]
     say_table("Fitted", ("key", "before", "fitted", "95 %"), rows, width=120)
     for sentence in found.remarks:
         say(sentence)
@@ -238,16 +237,11 @@ def _page(found: Fitted) -> str:
 def _tables(found: Fitted) -> list[ReportTable]:
     """Values with their intervals, and how they depend on each other."""
     estimates = found.estimates
-    interval = [
-        " to ".join(map(each.free.words, each.interval)) if each.interval else "on its limit"
-        for each in estimates
-    ]
-    before = [each.free.words(each.free.before) if each.free.given else "–" for each in estimates]
     columns = {
         "key": text_cells(each.name for each in estimates),
-        "before": text_cells(before),
+        "before": text_cells(each.before_in_words for each in estimates),
         "fitted": text_cells(each.free.words(each.value) for each in estimates),
-        "95 %": text_cells(interval),
+        "95 %": text_cells(each.interval_in_words for each in estimates),
         "limits": text_cells(
             f"{each.free.words(each.free.low)} to {each.free.words(each.free.high)}" for each in estimates
         ),

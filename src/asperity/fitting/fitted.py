@@ -55,6 +55,16 @@ class Estimate:
         return told + f", on its limit ({self.free.range_source})" * bool(self.limit)
 
     @property
+    def interval_in_words(self) -> str:
+        """The interval, for people."""
+        return " to ".join(map(self.free.words, self.interval)) if self.interval else "on its limit"
+
+    @property
+    def before_in_words(self) -> str:
+        """The value that the case gave, for people."""
+        return self.free.words(self.free.before) if self.free.given else "–"
+
+    @property
     def open_ends(self) -> list[str]:
         """Ends at which the interval stops although the data allow what lies beyond, one sentence each."""
         told = []

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from asperity.arguments import Array, NDArray
+from asperity.arguments import Array, Flags, NDArray
 from asperity.case.any_case import AnyCase
 from asperity.case.form import content, digest
 from asperity.errors import ComputationError, InputError, PhysicsWarning
@@ -223,7 +223,7 @@ class Problem:
         return len(self._groups)
 
     @cached_property
-    def _groups(self) -> list[tuple[NDArray[np.int_], NDArray[np.bool_]]]:
+    def _groups(self) -> list[tuple[NDArray[np.int_], Flags]]:
         """What is moved at once, as numbers of what is free, and which data (n, k) each of them moves.
 
         A band of roughness moves the levels that are heard while it is passed, and those beside it.

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from asperity.arguments import Array, NDArray
+from asperity.arguments import Array, Flags, NDArray
 
 FAR = 1e3
 """Residual, in uncertainties, of what cannot be computed at some values."""
@@ -112,7 +112,7 @@ def grouped_slopes(
     residuals: Residuals,
     place: Array,
     high: Array,
-    groups: Sequence[tuple[NDArray[np.int_], NDArray[np.bool_]]],
+    groups: Sequence[tuple[NDArray[np.int_], Flags]],
     by: float = RUN_STEP,
 ) -> Array:
     """Slopes of residuals (n, p) by differences of runs, some values moved at once.

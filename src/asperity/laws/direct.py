@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, NDArray, as_row
+from asperity.arguments import Array, ArrayLike, Flags, NDArray, as_row
 from asperity.laws import spec
 from asperity.surfaces.edges import FAR, Edges
 
@@ -80,7 +80,7 @@ class Direct:
         return make_interp_spline(np.arange(len(self.heights)), self.heights, k=5)
 
     @cached_property
-    def sound(self) -> NDArray[np.bool_]:
+    def sound(self) -> Flags:
         """Where heights of faults are those of the sound surface beside their edges (rows, ny)."""
         assert self.edges is not None
         return self.edges.sound

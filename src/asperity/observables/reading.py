@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from asperity.arguments import Array, NDArray, listed, nearest, one_of, require, shown
+from asperity.arguments import Array, Flags, NDArray, listed, nearest, one_of, require, shown
 from asperity.case.any_case import AnyCase, entry_of
 from asperity.case.form import content
 from asperity.case.table_headings import WIDE, are_words
@@ -99,7 +99,7 @@ def _follow(values: Array) -> bool:
     return bool((np.diff(numbers) == 1.0).all() and not off.any())
 
 
-def _numbered(at: Array) -> tuple[Array, NDArray[np.bool_]]:
+def _numbered(at: Array) -> tuple[Array, Flags]:
     """Numbers of the one-third octaves nearest to frequencies (n,), Hz, and which are centres of none."""
     numbers = np.rint(10.0 * np.log10(at))
     return numbers, np.abs(10.0 * np.log10(at) - numbers) > 0.06

@@ -8,7 +8,7 @@ from typing import TypeVar
 import numpy as np
 from xarray import DataTree
 
-from asperity.arguments import Array, FilePath, NDArray
+from asperity.arguments import Array, FilePath, Flags
 from asperity.case import any_case, cases, form, rolled_over, scene
 from asperity.case.speed import refuse_course
 from asperity.case.surface import DEFECTS, LENGTH, LEVEL, Surface
@@ -118,7 +118,7 @@ class Bands:
 
     wavelength: Array  # (n,), centres, m
     levels: Array  # (n,), dB re 1 µm
-    changed: NDArray[np.bool_]  # (n,), which of them may be changed
+    changed: Flags  # (n,), which of them may be changed
     lateral: float | None  # correlation length across over that along; None of a line
 
     def with_changed(self, levels: Array, lateral: float | None) -> "Bands":

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import beta, gamma
 
-from asperity.arguments import Array, ArrayLike, NDArray
+from asperity.arguments import Array, ArrayLike, Integers
 from asperity.radiation.track import IMPEDANCE, SPEED_OF_SOUND, above_zero
 from asperity.structures.body import Wheel
 from asperity.structures.modal import modal_answers
@@ -128,7 +128,7 @@ class RadiatingWheel:
 
     radius: float
     width: float
-    nodal_diameters: NDArray[np.int64]
+    nodal_diameters: Integers
     axial: Array
     radial: Array
 
@@ -153,6 +153,6 @@ class RadiatingWheel:
         tread = around * self.radial[:, None] ** 2 * self.radial_ratio(frequency)
         return IMPEDANCE * (disc + tread) * square
 
-    def _ratio(self, frequency: ArrayLike, transition: Array, exponent: NDArray[np.int64]) -> Array:
+    def _ratio(self, frequency: ArrayLike, transition: Array, exponent: Integers) -> Array:
         over = 2.0 * np.pi * above_zero(frequency) * self.radius / SPEED_OF_SOUND / transition[:, None]
         return 1.0 / (1.0 + over ** -exponent[:, None].astype(float))

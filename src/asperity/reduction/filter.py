@@ -9,7 +9,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from scipy.linalg import cho_factor, cho_solve
 
-from asperity.arguments import Array, ArrayLike, NDArray, as_row, require
+from asperity.arguments import Array, ArrayLike, Flags, Indices, NDArray, as_row, require
 from asperity.kernels.curves import shape_preserving
 from asperity.reduction.texture import PIECE, LongConvolution, StateTexture
 from asperity.spectra import hann_window
@@ -38,7 +38,7 @@ class FilterSpectra:
     """What one scanned strip says about the contact filter: spectra added up in bands."""
 
     wavenumber: Array  # (k,), cycles/m, mean of each band
-    bins: NDArray[np.intp]  # (k,), lines of the spectra in each band
+    bins: Indices  # (k,), lines of the spectra in each band
     force: Array  # (s, k), power of the scanned force in each state, N²
     # (s, k), power of the line textures under the patch of each state, mean over the lines, m²
     lines: Array
@@ -53,7 +53,7 @@ class ContactFilter:
     approaches: Array  # (s,), of the states, m
     wavenumber: Array  # (k,), cycles/m
     # (k,), where the texture has the power to say something; beside it the filter is held
-    excited: NDArray[np.bool_]
+    excited: Flags
     raw: Array  # (s, k), |Ĥ| of Eq. 2.6, root of the ratio of the powers of all strips; no sign
     magnitude: Array  # (s, k), the fit to it
     spread: Array  # (s, k), standard deviation of the strips' own fits
@@ -169,7 +169,7 @@ def estimate_filter(
     return ContactFilter(states, k, excited, *spectra, anchored.mean(axis=0), tangent, share, normalise)
 
 
-def _excited(wavenumber: Array, density: Array) -> NDArray[np.bool_]:
+def _excited(wavenumber: Array, density: Array) -> Flags:
     """Where a texture has power, from the density of its lines.
 
     Rough surfaces fall no faster than k^−4; what does is a cut-off, beyond which the force holds products of
@@ -181,7 +181,7 @@ def _excited(wavenumber: Array, density: Array) -> NDArray[np.bool_]:
     return weighted > CUT_OFF * np.maximum.accumulate(typical)
 
 
-def _neighbours(wavenumber: Array, excited: NDArray[np.bool_]) -> Array:
+def _neighbours(wavenumber: Array, excited: Flags) -> Array:
     """Weights, shape (k, k), with which bands count in the average about each wavenumber.
 
     A triangle over the logarithm of the wavenumber, times k²: spectra of rough lines then count evenly.
@@ -209,9 +209,7 @@ def _regressed(weights: Array, tangent: Array, strips: Sequence[FilterSpectra]) 
     return np.real(cross) / mean / tangent[:, None], coherence
 
 
-def _polynomials(
-    wavenumber: Array, excited: NDArray[np.bool_], ratio: Array, degree: int, through_one: bool
-) -> Array:
+def _polynomials(wavenumber: Array, excited: Flags, ratio: Array, degree: int, through_one: bool) -> Array:
     """Polynomials in dB over the wavenumber, fitted where the texture is excited and held beyond."""
     degree = min(degree, max(1, int(excited.sum()) - 2))
     highest = wavenumber[excited][-1]

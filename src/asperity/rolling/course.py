@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from asperity.arguments import Array, NDArray
+from asperity.arguments import Array, Flags, Integers
 from asperity.kernels.pointforce import SHIFTED, SLICED, Prepared, evaluate_all
 from asperity.laws.spec import SteppedLaw, settles
 from asperity.rolling.mechanism import Mechanism, RollingContact
@@ -155,7 +155,7 @@ def _raised(law: SteppedLaw, heights: Array) -> SimpleNamespace:
     return SimpleNamespace(evaluate=evaluate, **other, **({"settle": settle} if settles(law) else {}))
 
 
-def in_contact(law: Prepared | SteppedLaw, first: int, force: Array, approach: Array) -> NDArray[np.bool_]:
+def in_contact(law: Prepared | SteppedLaw, first: int, force: Array, approach: Array) -> Flags:
     """Whether surfaces touch from a step of a piece on, by force, N, and approach as the law sees it, m (n,).
 
     Always where the contact can pull.
@@ -176,7 +176,7 @@ def steps_beyond(law: Prepared, first: int, approach: Array) -> int:
     return int(evaluate_all(law, approach, first)[2])
 
 
-def stacked(pieces: Sequence[Any]) -> tuple[Prepared, NDArray[np.int64]]:
+def stacked(pieces: Sequence[Any]) -> tuple[Prepared, Integers]:
     """Laws of n contacts as `asperity.kernels.stepping.solve_prepared` takes them, padded to the largest.
 
     And numbers of states and of knots (2, n).

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from asperity.arguments import Array, NDArray, positive, require
+from asperity.arguments import Array, Integers, positive, require
 from asperity.errors import Outcome
 from asperity.progress import Progress
 from asperity.rolling import assembly
@@ -24,7 +24,7 @@ class RolledMechanism:
     """What was recorded of n contacts at t steps, after the run-in."""
 
     time: Array  # (t,), s, uniform from zero, after the run-in
-    body: NDArray[np.int64]  # (n,), to which body each contact belongs
+    body: Integers  # (n,), to which body each contact belongs
     contact_force: Array  # (n, t), N, compression positive
     history: Array  # (n, m), contact force of run-in and run, N
     relative_displacement: Array  # (n, t), approach of the mean surfaces, m, positive closing

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from asperity.arguments import Array, NDArray
+from asperity.arguments import Array, Flags
 from asperity.errors import InputError, LargeDeflectionWarning, percent
 from asperity.kernels.rail import Channels
 from asperity.rolling.course import Course
@@ -38,7 +38,7 @@ class Ground:
     alternating: Array  # (n,), least alternating compliance of all contacts at once, m/N
     thrown: Array  # (n,), that of what throws bodies apart: an endless rail carries impacts away
     limits: tuple[Limit, ...]  # what a time step must resolve
-    on_rail: NDArray[np.bool_]  # (n,), which contacts are on a rail
+    on_rail: Flags  # (n,), which contacts are on a rail
     yields: Array  # (n, n), mean static compliance of a rail, m/N; zero of modes
     bay: float = np.inf  # mass of a bay of rail, kg
     memory: int = 0  # time steps that a rail remembers
@@ -157,7 +157,7 @@ def _on_rail(ground: Ground, rail: RailBetween, course: Course) -> Ground:
     )
 
 
-def _channels(rail: RailBetween, starts: Array, on_rail: NDArray[np.bool_]) -> tuple[Channels, list[Array]]:
+def _channels(rail: RailBetween, starts: Array, on_rail: Flags) -> tuple[Channels, list[Array]]:
     """Channels between all contacts within reach, and the weights of the kernels that they carry.
 
     Places of the contacts on the rail at the start, m, and which of all contacts (n,) these are.

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from asperity.arguments import Array, NDArray, require
+from asperity.arguments import Array, Flags, Integers, require
 from asperity.laws.spec import Law
 from asperity.rolling.trajectory import Trajectory, Values
 from asperity.structures.body import Body
@@ -83,13 +83,13 @@ class Mechanism:
         return next((each for each in self.structures if isinstance(each, RailBetween)), None)
 
     @property
-    def on_rail(self) -> NDArray[np.bool_]:
+    def on_rail(self) -> Flags:
         """Which contacts are on the rail (n,)."""
         sides = ([self.structures[side.structure] for side in each.sides] for each in self.contacts)
         return np.array([any(isinstance(each, RailBetween) for each in every) for every in sides])
 
     @property
-    def first_modes(self) -> NDArray[np.int64]:
+    def first_modes(self) -> Integers:
         """Place of each structure among all modes, and their number at the end."""
         counts = [len(_of_modes(each, "natural_frequencies")) for each in self.structures]
         return np.concatenate([[0], np.cumsum(counts, dtype=np.int64)])

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from scipy.linalg import block_diag
 
-from asperity.arguments import Array, NDArray
+from asperity.arguments import Array, Flags
 from asperity.errors import ComputationError
 from asperity.kernels.pointforce import Prepared, evaluate_all
 from asperity.kernels.rail import preload_channels
@@ -197,7 +197,7 @@ def _move_on(ground: Ground, bodies: Sequence[Body], system: System, rest: Rest,
     return closer
 
 
-def _place(bodies: Sequence[Body], free: NDArray[np.bool_], values: Array, modes: Array, core: Array) -> None:
+def _place(bodies: Sequence[Body], free: Flags, values: Array, modes: Array, core: Array) -> None:
     """Write values of the coordinates of `at_rest` to free ones of all modes (m,), and to bodies (b, d)."""
     first = int(free.sum())
     modes[free] = values[:first]
@@ -220,7 +220,7 @@ class Rest:
     motion: Motion
     stiffness: Array  # (n,), of the contacts, N/m
     shapes: Array  # (n, m), of all modes
-    free: NDArray[np.bool_]  # (m,), modes that contacts alone hold
+    free: Flags  # (m,), modes that contacts alone hold
     compliance: Array  # (n, n), of what else yields, m/N
     rates: Array  # (n,), how fast a rail moves under them, m/s
 
@@ -268,7 +268,7 @@ def standing(
     return Rest(motion, stiffness, shapes, free, compliance, rates)
 
 
-def _on_support(ground: Ground) -> NDArray[np.bool_]:
+def _on_support(ground: Ground) -> Flags:
     """Which contacts (n,) start where no mode of the structure moves."""
     largest, steepest = (np.abs(each).max(axis=1, initial=0.0) for each in (ground.shapes, ground.rates))
     return largest <= ON_SUPPORT * steepest

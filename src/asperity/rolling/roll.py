@@ -6,7 +6,7 @@ from typing import Self
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, NDArray, as_row
+from asperity.arguments import Array, ArrayLike, Flags, as_row
 from asperity.errors import InputError
 from asperity.laws.spec import Law
 from asperity.progress import Progress
@@ -29,7 +29,7 @@ class RolledBodies(RolledMechanism):
 
     positions: Array  # (n, t), of the contacts, m
     history_start: Array  # (n,), position of the first value of `history`, m
-    in_contact: NDArray[np.bool_]  # (n, t), whether the surfaces touch
+    in_contact: Flags  # (n, t), whether the surfaces touch
     # (n, 2), least and largest approach that each law was asked for, from its plane, m, in run-in and run
     visited: Array
 

@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from asperity import errors
-from asperity.arguments import Array, NDArray
+from asperity.arguments import Array, Integers
 from asperity.structures.body import Body
 from asperity.written_numbers import engineering, rounded
 
@@ -89,9 +89,7 @@ def refuse_missed_load(
         )
 
 
-def warn_of_counts(
-    names: Sequence[str], counts: NDArray[np.int64], beyond: Sequence[int], recorded: int
-) -> None:
+def warn_of_counts(names: Sequence[str], counts: Integers, beyond: Sequence[int], recorded: int) -> None:
     """Warn of steps that missed the tolerance, and of steps at which a law was beyond its data.
 
     Of laws by their names: steps done and not converged, and steps beyond, of so many recorded.

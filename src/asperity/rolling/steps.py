@@ -25,7 +25,7 @@ from typing import Any
 import numpy as np
 from scipy.linalg import block_diag, eigh
 
-from asperity.arguments import Array, ArrayLike, NDArray
+from asperity.arguments import Array, ArrayLike, Flags, NDArray
 from asperity.errors import CoarseSamplingWarning, InputError, percent
 from asperity.kernels.pointforce import DRY, Prepared, evaluate_all
 from asperity.laws.spec import SteppedLaw
@@ -110,7 +110,7 @@ def alternating_of_modes(coefficients: Array) -> Array:
     return ((a[3] - a[2]) * (1.0 + a[5]) - a[1] * (a[7] - a[6])) / determinant
 
 
-def _natural(body: Body, time_step: float) -> tuple[Array, Array, Array, NDArray[np.bool_]]:
+def _natural(body: Body, time_step: float) -> tuple[Array, Array, Array, Flags]:
     """Squares of natural angular frequencies (d,), basis of natural coordinates and damping in it (d, d).
 
     And which of these coordinates turn by at most RESOLVED in a step.

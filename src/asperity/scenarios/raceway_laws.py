@@ -9,7 +9,7 @@ from typing import Any, get_args
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, NDArray, positive
+from asperity.arguments import Array, ArrayLike, Flags, Indices, NDArray, positive
 from asperity.contact import scan
 from asperity.contact.batched import find_device
 from asperity.contact.halfspace import HalfSpace
@@ -222,11 +222,11 @@ class OnRaceway:
         return body - self.surface.faults[rows], under
 
     @property
-    def positions(self) -> NDArray[np.intp]:
+    def positions(self) -> Indices:
         """Rows on which forces are solved."""
         return np.arange(0, self.rows, self.stride)
 
-    def _met(self, heights: NDArray[Any]) -> NDArray[np.bool_]:
+    def _met(self, heights: NDArray[Any]) -> Flags:
         """At which positions the window holds anything of heights (rows, lines)."""
         window = len(self.shape.body)
         rows = np.cumsum(self._around(np.any(heights, axis=1), window // 2))

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from scipy import fft
 
-from asperity.arguments import Array, ArrayLike, NDArray, positive
+from asperity.arguments import Array, ArrayLike, Indices, positive
 from asperity.contact.hertz import Hertz
 from asperity.contact.slices import EXPONENT, SlicedContact
 from asperity.reduction.stiffness import ForceCurve
@@ -226,7 +226,7 @@ class OnRollerRaceway(OnRaceway):
         length = float(rows) * self.surface.spacing[0]
         return min(-float(self.surface.faults.min()), length**2 / (8.0 * self.contact.radius))
 
-    def _near_faults(self) -> NDArray[np.intp]:
+    def _near_faults(self) -> Indices:
         """Rows where the contact reaches a fault."""
         damaged = np.asarray(self.surface.damaged.any(axis=1))
         reach = math.ceil(self.axes[0] / self.surface.spacing[0]) + 1

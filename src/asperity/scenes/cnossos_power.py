@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, NDArray
+from asperity.arguments import Array, ArrayLike, Integers
 from asperity.errors import Finding, Grade
 from asperity.laws import Role, in_role, names
 from asperity.reference import cnossos
@@ -103,7 +103,7 @@ def rolling_sound_power(
     return 10.0 ** (numbers / 10.0), np.vstack([levels, energy_sum(levels, axis=0)])
 
 
-def _bands(table: Table) -> tuple[NDArray[np.int64], Array]:
+def _bands(table: Table) -> tuple[Integers, Array]:
     """Numbers n of the bands 10^(n/10), rising, nearest to nominal or exact centres, and their levels."""
     numbers = _numbers(table[0])
     levels = np.asarray(table[1], dtype=float)
@@ -111,7 +111,7 @@ def _bands(table: Table) -> tuple[NDArray[np.int64], Array]:
     return numbers[order], levels[order]
 
 
-def _numbers(centres: ArrayLike) -> NDArray[np.int64]:
+def _numbers(centres: ArrayLike) -> Integers:
     return np.rint(10.0 * np.log10(centres)).astype(np.int64)
 
 

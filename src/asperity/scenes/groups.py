@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from asperity.arguments import Array, NDArray
+from asperity.arguments import Array, Indices
 from asperity.errors import Finding, InhomogeneousWarning, ShortRecordWarning
 from asperity.reduction.filter import punch_filter, punch_taps, response
 from asperity.reporting import data
@@ -250,7 +250,7 @@ def _filters(reduction: Reduction) -> Values:
     return laid_out
 
 
-def _on_states(values: Array, rows: NDArray[np.intp], count: int) -> Array:
+def _on_states(values: Array, rows: Indices, count: int) -> Array:
     """Values of some states among `count`; NaN for the others."""
     full = np.full((count, *values.shape[1:]), np.nan)
     full[rows] = values

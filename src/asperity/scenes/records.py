@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from asperity.arguments import Array, NDArray
+from asperity.arguments import Array, Flags
 from asperity.scenes import schema
 from asperity.schema import Values, rolling
 from asperity.spectra import band_levels, psd, spectrum_segment
@@ -46,7 +46,7 @@ class RecordedRuns:
         return np.fft.rfftfreq(self.segment, self.case.recorded_step)
 
     @cached_property
-    def shown(self) -> NDArray[np.bool_]:
+    def shown(self) -> Flags:
         """Which lines a result holds: up to the edge of the one-third octave of the highest frequency."""
         return (self.frequency > 0.0) & (self.frequency <= 1.13 * self.case.highest_frequency)
 

@@ -9,7 +9,7 @@ import numpy as np
 import scipy
 
 from asperity import errors
-from asperity.arguments import Array, ArrayLike, Complex, NDArray, require
+from asperity.arguments import Array, ArrayLike, Complex, Flags, Indices, NDArray, require
 from asperity.errors import ComputationError, InputError
 from asperity.spectra import root_mean_square
 from asperity.structures.modal import modal_answers
@@ -69,7 +69,7 @@ def least_squares(matrix: Array, right: Array, smallest: float | None = None) ->
     return (np.linalg.lstsq(matrix / size, right, rcond=smallest)[0].T / size).T
 
 
-def real_basis(poles: Complex) -> NDArray[np.bool_]:
+def real_basis(poles: Complex) -> Flags:
     """Which of two real numbers for each pole count (2p,): the first of a real pole, both of a pair."""
     return np.stack([np.ones(poles.size, dtype=bool), poles.imag != 0.0], axis=1).ravel()
 
@@ -182,7 +182,7 @@ def fit_modes(frequency: Array, receptance: Complex, rigid: Complex) -> Modes:
     return _searched(frequency, flexible[None], weights, level, masses, ((none, none, none), left))
 
 
-def fit_shapes(frequency: Array, receptance: Complex, rigid: Complex, driven: NDArray[np.intp]) -> Modes:
+def fit_shapes(frequency: Array, receptance: Complex, rigid: Complex, driven: Indices) -> Modes:
     """Modes with real shapes that add to the rigid motion of a structure.
 
     Frequency (n,), Hz, above zero and rising; receptances (n, p, e) of p places under forces at e of them,
@@ -385,7 +385,7 @@ class _Sums(NamedTuple):
 
 
 def _mode_shapes(
-    frequency: Array, flexible: Complex, weights: Array, driven: NDArray[np.intp], poles: Complex
+    frequency: Array, flexible: Complex, weights: Array, driven: Indices, poles: Complex
 ) -> tuple[Modes, float]:
     """Modes of given poles with real shapes, and the weighted error that they leave."""
     natural, ratio = _of_poles(poles)
@@ -424,7 +424,7 @@ def _summed(answers: Complex, target: Complex, weights: Array) -> _Sums:
     return _Sums(products, targets)
 
 
-def _first_shapes(sums: _Sums, driven: NDArray[np.intp], residual: int) -> tuple[NDArray[np.intp], Array]:
+def _first_shapes(sums: _Sums, driven: Indices, residual: int) -> tuple[Indices, Array]:
     """Shapes at the places of excitation from residues without constraint: the pole of each, and (e, modes).
 
     Those of a mode are of rank one; the last `residual` poles stand for many modes and may have any rank.
@@ -444,7 +444,7 @@ def _first_shapes(sums: _Sums, driven: NDArray[np.intp], residual: int) -> tuple
     return mode, (np.sqrt(values[mode, rank])[:, None] * vectors[mode, :, rank]).T
 
 
-def _settled(sums: _Sums, driven: NDArray[np.intp], mode: NDArray[np.intp], shapes: Array) -> Array:
+def _settled(sums: _Sums, driven: Indices, mode: Indices, shapes: Array) -> Array:
     """Shapes (e, modes) at the places of excitation of least squares, by Levenberg and Marquardt."""
     products = sums.products[driven][:, :, mode[:, None], mode]
     targets = sums.targets[driven][:, :, mode]
@@ -481,7 +481,7 @@ def _error_of(shapes: Array, products: Array, targets: Array) -> tuple[float, Ar
     return error, slope, curvature.reshape(shapes.size, shapes.size)
 
 
-def _rows(sums: _Sums, mode: NDArray[np.intp], at_driven: Array) -> Array:
+def _rows(sums: _Sums, mode: Indices, at_driven: Array) -> Array:
     """Shapes (p, modes) by least squares, for given ones (e, modes) at the places of excitation."""
     rows = []
     for products, targets in zip(sums.products, sums.targets, strict=True):

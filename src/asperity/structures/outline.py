@@ -6,7 +6,16 @@ from itertools import pairwise
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, NDArray, finite_array, one_of, positive, require
+from asperity.arguments import (
+    Array,
+    ArrayLike,
+    Flags,
+    Integers,
+    finite_array,
+    one_of,
+    positive,
+    require,
+)
 from asperity.errors import ComputationError, InputError
 from asperity.parameters import Number, Quantity, parameter
 from asperity.reference.railways import SECTIONS
@@ -42,8 +51,8 @@ class Mesh:
     """Triangles of six nodes in the section of a solid of revolution."""
 
     nodes: Array  # (k, 2), radius and axial place, m
-    triangles: NDArray[np.int64]  # (e, 6), corners, then the middles of the sides 01, 12 and 20
-    edges: NDArray[np.int64]  # (b, 3), of the outline, one behind the other: first, middle and last node
+    triangles: Integers  # (e, 6), corners, then the middles of the sides 01, 12 and 20
+    edges: Integers  # (b, 3), of the outline, one behind the other: first, middle and last node
 
 
 def checked_outline(points: ArrayLike, what: str = "outline of the section") -> Array:
@@ -214,7 +223,7 @@ def mesh_of(outline: Array, size: float | None = None, kept: ArrayLike = ()) -> 
     return _quadratic(corners, triangles, len(around))
 
 
-def _straightened(outline: Array, tolerance: float, kept: NDArray[np.int64]) -> Array:
+def _straightened(outline: Array, tolerance: float, kept: Integers) -> Array:
     """Leave out points within a tolerance, m, of the line between others (Ramer, Douglas and Peucker)."""
     far = int(np.argmax(np.hypot(*(outline - outline[0]).T)))
     stay = np.zeros(len(outline) + 1, dtype=bool)
@@ -257,7 +266,7 @@ def _lattice(around: Array, step: float) -> Array:
     return points[near > 0.6 * step]
 
 
-def _inside(points: Array, around: Array) -> NDArray[np.bool_]:
+def _inside(points: Array, around: Array) -> Flags:
     """Whether points (n, 2) lie inside: an odd number of edges on the way out."""
     r, z = around.T
     r2, z2 = np.roll(around, -1, axis=0).T
@@ -281,7 +290,7 @@ def _areas(corners: Array) -> Array:
     return first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
 
 
-def _triangles(corners: Array, around: Array) -> NDArray[np.int64]:
+def _triangles(corners: Array, around: Array) -> Integers:
     """Triangles of Delaunay that lie inside an outline, counterclockwise (e, 3)."""
     from scipy.spatial import Delaunay
 
@@ -292,7 +301,7 @@ def _triangles(corners: Array, around: Array) -> NDArray[np.int64]:
     return found[~flat & _inside(corners[found].mean(axis=1), around)]
 
 
-def _missing_edges(triangles: NDArray[np.int64], count: int) -> NDArray[np.bool_]:
+def _missing_edges(triangles: Integers, count: int) -> Flags:
     """Which edges of an outline of so many points are no side of one triangle."""
     sides = np.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     start = np.arange(count)
@@ -300,7 +309,7 @@ def _missing_edges(triangles: NDArray[np.int64], count: int) -> NDArray[np.bool_
     return np.array([(int(a), (int(a) + 1) % count) not in there for a in start])
 
 
-def _quadratic(corners: Array, triangles: NDArray[np.int64], around: int) -> Mesh:
+def _quadratic(corners: Array, triangles: Integers, around: int) -> Mesh:
     """Put a node in the middle of each side; edges of the outline are those of the first corners."""
     sides = np.stack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]], axis=1)
     known, number = np.unique(np.sort(sides, axis=2).reshape(-1, 2), axis=0, return_inverse=True)

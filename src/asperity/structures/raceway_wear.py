@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from asperity.arguments import Array, NDArray, positive
+from asperity.arguments import Array, Indices, positive
 from asperity.contact.friction import Friction, SlidingContact, cell_places
 from asperity.contact.groove_creepage import contact_curvature, sliding_across
 from asperity.structures.bearing_creepage import RINGS, BearingCreepage, Ring, creepage_of
@@ -131,7 +131,7 @@ def _worn(
     loaded: LoadedBearing,
     turning: Kinematics,
     ring: Ring,
-    order: NDArray[np.intp],
+    order: Indices,
     slid: tuple[Array, Array],
 ) -> tuple[Array, Array, Array, float]:
     """Places across, and depth, area and volume of one ring over k/H, at places around in an order."""

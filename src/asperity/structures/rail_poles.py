@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import scipy
 
-from asperity.arguments import Array, ArrayLike, Complex, NDArray
+from asperity.arguments import Array, ArrayLike, Complex, Integers, NDArray
 from asperity.errors import ComputationError, InputError, UnconvergedWarning, percent
 from asperity.progress import Progress
 from asperity.speeds import slowest
@@ -195,7 +195,7 @@ def _poles(kernel: MovingKernel, count: int) -> Complex:
     )
 
 
-def _spread(kernel: MovingKernel) -> NDArray[np.int64]:
+def _spread(kernel: MovingKernel) -> Integers:
     """Start positions to fit poles from: all of one bay, or some all over bays that differ (golden ratio)."""
     count = len(kernel.weights)
     if kernel.track.cell_bays == 1:

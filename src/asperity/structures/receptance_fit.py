@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import scipy
 
-from asperity.arguments import Array, Complex, NDArray
+from asperity.arguments import Array, Complex, Indices
 from asperity.errors import CoarseSamplingWarning, EnergyWarning, InputError, percent
 from asperity.structures import modal, modal_fit
 from asperity.structures.body import Body, Wheel
@@ -30,7 +30,7 @@ WORTH_KNOTS = 0.7
 
 
 def with_stiffness_above(
-    frequency: Array, at: Array, number: NDArray[np.intp], flexible: Complex, modes: Modes
+    frequency: Array, at: Array, number: Indices, flexible: Complex, modes: Modes
 ) -> tuple[Array, Modes]:
     """Modes at finer places, m, their shapes smoothed, and others for the stiffness of those above the band.
 
@@ -62,7 +62,7 @@ def with_stiffness_above(
     )
 
 
-def _squares_above(frequency: Array, number: NDArray[np.intp], flexible: Complex, modes: Modes) -> Array:
+def _squares_above(frequency: Array, number: Indices, flexible: Complex, modes: Modes) -> Array:
     """Squared shapes (e, above), 1/kg, of the modes above the band where forces act."""
     natural, ratios, shapes = modes
     answers = modal.modal_answers(frequency, natural, ratios)

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from asperity.arguments import Complex, NDArray
+from asperity.arguments import Complex, Indices
 from asperity.structures.lateral_rail import at_springs
 from asperity.structures.wheel_modes import WheelModes
 
@@ -100,7 +100,7 @@ def poles_of(modes: WheelModes) -> Complex:
     return 2.0 * np.pi * modes.natural_frequencies * (np.sqrt(1.0 - ratio**2) + 1j * ratio)
 
 
-def standing_modes(modes: WheelModes) -> NDArray[np.intp]:
+def standing_modes(modes: WheelModes) -> Indices:
     """Number (p,) of the mode at rest that each mode of a turning wheel belongs to, from 1.
 
     With nodal diameters it is two waves, one behind the other (`WheelModes.turning`).
@@ -112,7 +112,7 @@ def standing_modes(modes: WheelModes) -> NDArray[np.intp]:
     return np.cumsum(~second)
 
 
-def ringing_modes(modes: WheelModes, place: float, omega: Complex, forces: Complex) -> NDArray[np.intp]:
+def ringing_modes(modes: WheelModes, place: float, omega: Complex, forces: Complex) -> Indices:
     """Number (n,) of the mode of a wheel that holds most energy.
 
     In free motions of angular frequencies (n,), rad/s, with so much normal per lateral force (n,), at a place

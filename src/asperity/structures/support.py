@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, Complex, NDArray, finite_array
+from asperity.arguments import Array, ArrayLike, Complex, Flags, finite_array
 from asperity.errors import InputError
 from asperity.written_numbers import count_of, rounded
 
@@ -185,7 +185,7 @@ def _table(rows: Array) -> StiffnessTable:
     return StiffnessTable(*(tuple(column.tolist()) for column in sorted_rows[:, :3].T))
 
 
-def band_of(frequencies: Array, wrong: NDArray[np.bool_]) -> str:
+def band_of(frequencies: Array, wrong: Flags) -> str:
     """The first band in which something is wrong; nothing where it is nowhere."""
     found = np.flatnonzero(wrong)
     if not found.size:

@@ -7,7 +7,16 @@ from typing import Any
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, NDArray, finite_array, positive, real, require
+from asperity.arguments import (
+    Array,
+    ArrayLike,
+    Flags,
+    Integers,
+    finite_array,
+    positive,
+    real,
+    require,
+)
 from asperity.errors import InputError
 from asperity.reference.materials import Material
 from asperity.store import Store, content_key, made
@@ -85,9 +94,7 @@ def _elasticity(material: Material) -> Array:
     return law
 
 
-def natural_modes(
-    mesh: Mesh, n: int, material: Material, highest: float, held: NDArray[np.bool_]
-) -> tuple[Array, Array]:
+def natural_modes(mesh: Mesh, n: int, material: Material, highest: float, held: Flags) -> tuple[Array, Array]:
     """Natural frequencies up to the highest (p,), Hz, and mass-normalised shapes (p, k, 3), kg^(−1/2).
 
     `held` (k, 3) are the displacements that are zero. Of n = 0 torsion is left out: no radial or axial force
@@ -179,7 +186,7 @@ class WheelModes:
 
     natural_frequencies: Array
     damping_ratios: Array
-    nodal_diameters: NDArray[np.int64]
+    nodal_diameters: Integers
     places: Array
     radial: Array
     axial: Array
@@ -219,7 +226,7 @@ class WheelModes:
         ]
         return both[0], both[1]
 
-    def heard(self, place: float = 0.0) -> NDArray[np.bool_]:
+    def heard(self, place: float = 0.0) -> Flags:
         """Whether each mode (p,) answers to a radial force at a place, m."""
         largest = np.maximum(np.abs(self.radial).max(axis=1), np.abs(self.axial).max(axis=1))
         return np.abs(self.at(place)[0]) > SILENT * largest
@@ -401,7 +408,7 @@ def _found(mesh: Mesh, radius: float, material: Material, highest: float) -> dic
     return dict(zip(names, columns, strict=True)) | {"places": mesh.nodes[tread, 1]}
 
 
-def _tread(mesh: Mesh, radius: float) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _tread(mesh: Mesh, radius: float) -> tuple[Integers, Integers]:
     """Nodes of the tread by rising axial place, and its edges."""
     r, z = mesh.nodes.T
     first, last = mesh.edges[:, 0], mesh.edges[:, 2]
@@ -428,7 +435,7 @@ def _over_disc(mesh: Mesh, axial: Array) -> Array:
     return np.einsum("peb,eb->p", axial[:, mesh.edges] ** 2, weight)
 
 
-def _mean_square(mesh: Mesh, edges: NDArray[np.int64], radial: Array) -> Array:
+def _mean_square(mesh: Mesh, edges: Integers, radial: Array) -> Array:
     """Mean square of radial shapes (p, k) along edges, over their axial places (p,)."""
     z = mesh.nodes[edges, 1]
     weight = _SIMPSON * np.abs(z[:, 2] - z[:, 0])[:, None]

@@ -8,7 +8,7 @@ import numpy as np
 import xarray
 from xarray import DataTree
 
-from asperity.arguments import FilePath, NDArray, one_of, require, shown
+from asperity.arguments import FilePath, Integers, one_of, require, shown
 from asperity.case import any_case, cases
 from asperity.errors import InputError
 from asperity.progress import Progress
@@ -185,7 +185,7 @@ def _left_out(table: xarray.Dataset, effect: xarray.DataArray) -> xarray.DataArr
     return xarray.DataArray(reasons, dims=VARIANT)
 
 
-def _order(effect: xarray.DataArray, sweep: Collection[str]) -> NDArray[np.int64]:
+def _order(effect: xarray.DataArray, sweep: Collection[str]) -> Integers:
     """Places of the variants by what they do to the whole, of several parts; mean over other keys."""
     whole = effect
     for parts in (schema.EFFECT_RADIATOR.name, JUDGED):

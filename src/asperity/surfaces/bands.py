@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, NDArray, as_row, require
+from asperity.arguments import Array, ArrayLike, Flags, as_row, require
 from asperity.spectra import HALF_BAND, band_levels, psd
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.strip import places_across
@@ -54,7 +54,7 @@ def band_levels_of(surface: Profile | HeightMap) -> tuple[Array, Array]:
     return 1.0 / centres, levels
 
 
-def likely_band(wavelength: Array) -> NDArray[np.bool_]:
+def likely_band(wavelength: Array) -> Flags:
     """Which bands of a wavelength, m, lie between those of 3.15 mm and 0.4 m."""
     shortest, longest = LIKELY_WAVELENGTHS
     return (wavelength > shortest / HALF_BAND) & (wavelength < longest * HALF_BAND)

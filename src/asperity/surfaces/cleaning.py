@@ -8,7 +8,7 @@ import numpy as np
 import scipy
 from numpy.lib.stride_tricks import sliding_window_view
 
-from asperity.arguments import Array, NDArray
+from asperity.arguments import Array, Flags
 from asperity.errors import MissingPointsWarning
 from asperity.written_numbers import count_of
 
@@ -77,7 +77,7 @@ def nearly_complete(surface: S) -> S | None:
     return fill(surface, lines=False) if surface.missing_share <= FILLED_SHARE_WARNED else None
 
 
-def spikes(surface: "HeightMap") -> NDArray[np.bool_]:
+def spikes(surface: "HeightMap") -> Flags:
     """Find the spikes of a map: Hampel's identifier on the distance from the local median.
 
     A point is a spike if it is farther from the median of its 5 × 5 neighbours than `FARTHEST`

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from asperity.arguments import Array, NDArray, finite_array, require, two_lengths
+from asperity.arguments import Array, Flags, finite_array, require, two_lengths
 
 REACH = 1.5
 """Distance from an edge, over the sides of a cell together, up to which it has to be known."""
@@ -71,12 +71,12 @@ class Edges:
         return self.distance / self.sides().sum(axis=0)
 
     @property
-    def sound(self) -> NDArray[np.bool_]:
+    def sound(self) -> Flags:
         """Cells with the heights of the sound surface, though they may lie beyond the edge in part."""
         return self.places > FIRST
 
     @property
-    def crossed(self) -> NDArray[np.bool_]:
+    def crossed(self) -> Flags:
         """Those of them that give way more than others, because an edge crosses them or is close."""
         return self.sound & (self.places < 0.5)
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, NDArray, require
+from asperity.arguments import Array, ArrayLike, Flags, NDArray, require
 from asperity.errors import OutOfRangeWarning
 from asperity.parameters import Choice, File, Number, Quantity, checked_parameters, parameter
 from asperity.surfaces.edges import FAR, REACH, Edges
@@ -272,9 +272,7 @@ def _places(
         yield at, np.asarray(at - middle)[:, None] * dx, across
 
 
-def _lay_edge(
-    edges: Edges, fault: Fault, under: NDArray[Any], places: tuple[Array, Array]
-) -> NDArray[np.bool_]:
+def _lay_edge(edges: Edges, fault: Fault, under: NDArray[Any], places: tuple[Array, Array]) -> Flags:
     """Write the edge of a fault where it is the next one; return which cells are sound at least in part."""
     distance, normal = fault.outline(*places)
     own = Edges(distance, normal, np.zeros(distance.shape), edges.spacing)

@@ -6,7 +6,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse import linalg
 
-from asperity.arguments import Array, NDArray
+from asperity.arguments import Array, Flags, Indices
 
 FEW = 2**14
 """Unknown heights that a direct solution is the fastest for."""
@@ -14,10 +14,10 @@ AROUND = 3
 """Points along the sides of the blocks that are one point of the next coarser grid."""
 ACCURACY = 1e-12
 """Norm of what is left of the equations, over that of their right side."""
-Places = tuple[NDArray[np.intp], ...]
+Places = tuple[Indices, ...]
 
 
-def harmonic(heights: Array, missing: NDArray[np.bool_], spacings: Array) -> Array:
+def harmonic(heights: Array, missing: Flags, spacings: Array) -> Array:
     """Heights of the missing points that solve the discrete Laplace equation, with no slope at the border.
 
     Parameters
@@ -44,7 +44,7 @@ def harmonic(heights: Array, missing: NDArray[np.bool_], spacings: Array) -> Arr
     return found + datum
 
 
-def _equations(heights: Array, missing: NDArray[np.bool_], spacings: Array) -> tuple[sparse.csr_array, Array]:
+def _equations(heights: Array, missing: Flags, spacings: Array) -> tuple[sparse.csr_array, Array]:
     """Matrix and right side of the five-point equations of the missing points."""
     count = int(missing.sum())
     number = np.full(heights.shape, -1, dtype=np.int32)

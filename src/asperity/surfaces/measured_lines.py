@@ -12,7 +12,7 @@ import numpy as np
 import scipy
 from scipy import fft
 
-from asperity.arguments import Array, NDArray, require
+from asperity.arguments import Array, Flags, require
 from asperity.errors import CoarseSamplingWarning
 from asperity.reference.cnossos import rail_roughness
 from asperity.spectra import band_levels, psd
@@ -125,7 +125,7 @@ def remove_spikes(profile: Profile) -> tuple[Profile, int, int]:
     return replace(profile, heights=cut), removed, changed
 
 
-def _sharp_and_feet(heights: Array, spacing: float) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+def _sharp_and_feet(heights: Array, spacing: float) -> tuple[Flags, Flags]:
     """Where a line (n,) bends as sharply as a spike, and where spikes may end, its own ends among them."""
     count = len(heights)
     sharp = np.zeros(count, dtype=bool)
@@ -237,7 +237,7 @@ class ThirdOctaves:
     limit: Array  # EN ISO 3095:2013; NaN where it gives none
 
     @property
-    def limited(self) -> NDArray[np.bool_]:
+    def limited(self) -> Flags:
         """Bands for which there is a limit."""
         return np.isfinite(self.limit)
 

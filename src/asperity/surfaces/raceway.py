@@ -9,7 +9,7 @@ from typing import Literal, Self
 import numpy as np
 from scipy import fft
 
-from asperity.arguments import Array, ArrayLike, NDArray, finite_array, require, two_lengths
+from asperity.arguments import Array, ArrayLike, Flags, NDArray, finite_array, require, two_lengths
 from asperity.parameters import File, ListOf, Number, Quantity, checked_parameters, parameter
 from asperity.surfaces.edges import Edges
 from asperity.surfaces.faults import LENGTH, MAP, Fault, lay, map_of
@@ -220,7 +220,7 @@ class Raceway:
         require(shape[0] >= 8 and shape[1] % 2, "heights of the raceway", f"shape {shape}", allowed)
 
     @property
-    def damaged(self) -> NDArray[np.bool_]:
+    def damaged(self) -> Flags:
         """Where faults or their edges are (rows, lines)."""
         hollow = self.faults != 0.0
         return hollow if self.edges is None else hollow | self.edges.crossed

@@ -9,7 +9,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from scipy import fft
 
-from asperity.arguments import Array, ArrayLike, NDArray, require, two_lengths
+from asperity.arguments import Array, ArrayLike, Indices, require, two_lengths
 from asperity.spectra import HALF_BAND, level_of
 from asperity.surfaces.bands import MICROMETRE, band_texture, range_of_bands
 from asperity.surfaces.heightmap import HeightMap
@@ -310,10 +310,10 @@ class AffineTile(NamedTuple):
 class MembersOfRange(NamedTuple):
     """Waves of a range on a tile, by their number along."""
 
-    along: NDArray[np.intp]
-    across: NDArray[np.intp]
+    along: Indices
+    across: Indices
     stretched: Array  # q'², in the least one of the range
-    rank: NDArray[np.intp]  # from the least wavenumber on: those of a shorter shortest wave come after these
+    rank: Indices  # from the least wavenumber on: those of a shorter shortest wave come after these
 
 
 @lru_cache(maxsize=32)

@@ -1,6 +1,6 @@
 """A ball bearing on its page: how it carries its load, what moves, how quiet it is, which part is heard."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -47,7 +47,8 @@ def _numbers(tree: DataTree) -> Iterator[Series]:
         yield replace(series, name=_element(tree))
 
 
-def _named(tree: DataTree, part: str) -> str:
+def named_part(tree: DataTree, part: str) -> str:
+    """Name of a part: what rolls is balls or rollers."""
     return f"{_element(tree)}s" if part == "ball" else NAMES[part]
 
 
@@ -109,7 +110,7 @@ def load_zone(tree: DataTree, lines: Lines) -> chart.Drawn:
             against = -1.0 if data.case_words(tree, "bearing.turning") == "outer" else 1.0
             x, y = _at(0.5 * ball, place + against * where)
             middle = _at(0.5 * pitch, place)
-        named = f"{'faults' if len(faults) > 1 else 'fault'} of the {_named(tree, part)}", COLOURS[part]
+        named = f"{'faults' if len(faults) > 1 else 'fault'} of the {named_part(tree, part)}", COLOURS[part]
         marks.append(chart.Line(x + middle[0], y + middle[1], *named, width=0.0, marker="D"))
     if data.present(tree, bearing.SENSOR):
         sensors = _at(rim - 0.5 * RING * ball, data.values(tree, bearing.SENSOR))
@@ -128,7 +129,7 @@ def load_zone(tree: DataTree, lines: Lines) -> chart.Drawn:
         moved = data.values(tree, bearing.MODULATION)
         turns = ", where the record begins" if part in parts and moved[parts.index(part)] > 0.0 else ""
         one, which = ("Diamond", "fault") if len(faults) == 1 else ("Diamonds", "faults")
-        yield f"{one}: the {which} of the {_named(tree, part)}{turns}."
+        yield f"{one}: the {which} of the {named_part(tree, part)}{turns}."
 
 
 def _faults(tree: DataTree) -> dict[str, list[tuple[float, int]]]:
@@ -303,17 +304,29 @@ def ring_acceleration(tree: DataTree, lines: Lines) -> chart.Drawn:
 # --- how quiet it is, and what is heard
 
 
+def tones_of(tree: DataTree) -> list[tuple[str, float]]:
+    """Parts, and how often in a second their places are met."""
+    return list(zip(data.words(tree, bearing.PART), data.values(tree, bearing.TONE).tolist(), strict=True))
+
+
+def multiples(
+    tree: DataTree, tones: Iterable[tuple[str, float]], form: str, count: int, highest: float
+) -> list[chart.Mark]:
+    """Rules at so many multiples of what is told of each part, below the highest."""
+    return [
+        chart.Rules(
+            at[at < highest], label=f"{named_part(tree, part)}: {form.format(tone)} and multiples",
+            colour=COLOURS[part], dashes=(2.0, 2.0)
+        )
+        for part, tone in tones
+        for at in [tone * np.arange(1.0, count + 1.0)]
+    ]  # fmt: skip
+
+
 def _tones(tree: DataTree, highest: float) -> list[chart.Mark]:
     """Tones of the parts and their multiples."""
     count = len(data.values(tree, bearing.HARMONIC))
-    return [
-        chart.Rules(
-            at[at < highest], label=f"{_named(tree, part)}: {tone:.1f} Hz and multiples",
-            colour=COLOURS[part], dashes=(2.0, 2.0)
-        )
-        for part, tone in zip(data.words(tree, bearing.PART), data.values(tree, bearing.TONE), strict=True)
-        for at in [tone * np.arange(1.0, count + 1.0)]
-    ]  # fmt: skip
+    return multiples(tree, tones_of(tree), "{:.1f} Hz", count, highest)
 
 
 def _orders(tree: DataTree) -> chart.Second:
@@ -357,7 +370,7 @@ def envelope_spectrum(tree: DataTree, lines: Lines) -> chart.Drawn:
     where, size = (data.of_law(tree, each, main) for each in (bearing.LINE_FREQUENCY, bearing.LINE_AMPLITUDE))
     marks = [
         chart.Line(
-            where[row], size[row], f"{_named(tree, part)}: found", COLOURS[part], width=0.0, marker="o"
+            where[row], size[row], f"{named_part(tree, part)}: found", COLOURS[part], width=0.0, marker="o"
         )
         for row, part in enumerate(data.words(tree, bearing.PART))
         if found[row]
@@ -447,7 +460,7 @@ def lines_table(tree: DataTree) -> ReportTable:
     tones = data.values(tree, bearing.TONE)
     turning = data.number(tree, bearing.TURNING) or 1.0
     columns = {
-        "part": text_cells(_named(tree, part) for part in data.words(tree, bearing.PART)),
+        "part": text_cells(named_part(tree, part) for part in data.words(tree, bearing.PART)),
         "tone / Hz": number_cells(tones, "{:.2f}"),
         "orders": number_cells(tones / turning, "{:.3f}"),
         "side bands ± / Hz": number_cells(data.values(tree, bearing.MODULATION), "{:.2f}"),

@@ -7,7 +7,7 @@ from xarray import DataTree
 
 from asperity.reporting import chart, data, panels
 from asperity.reporting.figure import Lines, Of, Series, figure
-from asperity.scenes.figures.bearing import COLOURS, NAMES
+from asperity.scenes.figures.bearing import COLOURS, multiples, named_part, tones_of
 from asperity.schema import bearing
 from asperity.written_numbers import rounded
 
@@ -28,8 +28,7 @@ def _level(amplitude: chart.Numbers) -> chart.Numbers:
 def _orders(tree: DataTree) -> list[tuple[str, float]]:
     """Parts, and how often their places are met in a turn."""
     turning = data.number(tree, bearing.TURNING) or 1.0
-    tones = data.values(tree, bearing.TONE) / turning
-    return list(zip(data.words(tree, bearing.PART), tones.tolist(), strict=True))
+    return [(part, tone / turning) for part, tone in tones_of(tree)]
 
 
 @figure("Order spectrum", Of(bearing.ORDER), Of(bearing.ORDER_AMPLITUDE, "{law}"))
@@ -40,14 +39,7 @@ def order_spectrum(tree: DataTree, lines: Lines) -> chart.Drawn:
     within = lines.at <= highest
     levels = [Series(s.name, s.units, _level(s.values), s.entry, s.label, s.places) for s in lines.lines]
     drawn = panels.styled(tree, lines.at, levels)
-    rules = [
-        chart.Rules(
-            at[at < highest], label=f"{NAMES[part]}: {order:.2f} and multiples", colour=COLOURS[part],
-            dashes=(2.0, 2.0)
-        )
-        for part, order in orders
-        for at in [order * np.arange(1.0, MULTIPLES + 1.0)]
-    ]  # fmt: skip
+    rules = multiples(tree, orders, "{:.2f}", MULTIPLES, highest)
     along = chart.Axis("order, events in a turn", 0.0, highest)
     across = panels.levels_axis(LEVEL, [each.y[within] for each in drawn], 80.0)
     yield chart.Panel(along, across, (*rules, *drawn), height=4.2)
@@ -82,8 +74,8 @@ def run_up_map(tree: DataTree, lines: Lines) -> chart.Drawn:
     shown = chart.Field((left, right), (ends[0], ends[1]), levels.T, LEVEL, top - SPAN, top)
     orders = [
         chart.Line(
-            1e-3 * order * ends / 60.0, ends, f"{NAMES[part]}, {order:.2f} in a turn", COLOURS[part],
-            (3.0, 3.0), 1.2
+            1e-3 * order * ends / 60.0, ends, f"{named_part(tree, part)}, {order:.2f} in a turn",
+            COLOURS[part], (3.0, 3.0), 1.2
         )
         for part, order in _orders(tree)
     ]  # fmt: skip

@@ -12,7 +12,7 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
-from asperity.arguments import Array, NDArray, require
+from asperity.arguments import Array, Flags, NDArray, require
 from asperity.errors import OutOfRangeWarning
 from asperity.surfaces.readers import guards
 from asperity.surfaces.readers.belief import FEWEST_POINTS
@@ -79,7 +79,7 @@ def read_sdf(path: Path, hints: Hints) -> list[guards.Surface]:
     return guards.surfaces_of(heights.T, (dx, dy), source)
 
 
-def missing_in(raw: NDArray[Any], kind: str, *, old: bool) -> NDArray[np.bool_]:
+def missing_in(raw: NDArray[Any], kind: str, *, old: bool) -> Flags:
     """Points without a height, by their stored values: the end of their type that a revision reserves.
 
     The smallest value by ISO 25178-71, and the largest of unsigned types, which it does not have; of one byte

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import numpy as np
 import scipy
 
-from asperity.arguments import Array, NDArray, require
+from asperity.arguments import Array, Indices, require
 from asperity.errors import InputError
 from asperity.written_numbers import count_of, rounded
 
@@ -34,7 +34,7 @@ LARGEST = 1e60
 """Size of a coordinate in any unit."""
 JITTER = 4.0
 """Least ratio of distances between the lines of a grid to those of coordinates within one of them."""
-Index = NDArray[np.intp]
+Index = Indices
 
 
 def line(x: Array, z: Array, source: str) -> tuple[Array, float]:
