@@ -1,4 +1,5 @@
-"""A figure as numbers: panels with axes and marks, which the page and matplotlib draw alike."""
+"""A figure as numbfrom asperity.arguments import Array
+ers: panels with axes and marks, which the page and matplotlib draw alike."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -6,10 +7,9 @@ from itertools import cycle
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-Numbers = NDArray[np.float64]
-Flags = NDArray[np.bool_]
+from asperity.arguments import Array, Integers
+
 Dashes = tuple[float, ...]
 """Lengths that are drawn and left out, in turn, in points at a width of one; empty for a full line."""
 FREQUENCY, TIME = "frequency", "time"
@@ -84,12 +84,12 @@ def sequence_styles(count: int) -> list[dict[str, Any]]:
     return [{"colour": colour, "dashes": dashes} for colour, dashes in looks]
 
 
-def decibels(power: Numbers, reference: float = 1.0) -> Numbers:
+def decibels(power: Array, reference: float = 1.0) -> Array:
     """10 lg(power/reference); NaN where there is no power."""
     return 10 * np.log10(np.where(power > 0, power / reference, np.nan))
 
 
-def envelope(signal: Numbers, columns: int) -> tuple[NDArray[np.int64], Numbers, Numbers]:
+def envelope(signal: Array, columns: int) -> tuple[Integers, Array, Array]:
     """Smallest and largest value of a long series (n,) in each of at most `columns` stretches.
 
     Returns the index at which each stretch starts, and the extremes, all (m,).
@@ -100,7 +100,7 @@ def envelope(signal: Numbers, columns: int) -> tuple[NDArray[np.int64], Numbers,
     return starts, np.fmin.reduceat(signal, starts), np.fmax.reduceat(signal, starts)
 
 
-def as_seen(values: Numbers) -> tuple[Numbers, tuple[float, float]]:
+def as_seen(values: Array) -> tuple[Array, tuple[float, float]]:
     """Numbers (nx, ny) as means over blocks where more are held than a picture has dots, and the share of
     either side that they cover."""
     blocks = [max(1, round(n / SEEN)) for n in values.shape]
@@ -114,7 +114,7 @@ def as_seen(values: Numbers) -> tuple[Numbers, tuple[float, float]]:
     return means, (nx / values.shape[0], ny / values.shape[1])
 
 
-def smooth_on_log_axis(frequency: Numbers, psd: Numbers) -> tuple[Numbers, Numbers]:
+def smooth_on_log_axis(frequency: Array, psd: Array) -> tuple[Array, Array]:
     """Mean power in stretches of a 24th of an octave, where lines are denser than that; for drawing only.
 
     Positive, increasing frequencies or wavenumbers (n,) and PSD (..., n); returns the same, with fewer lines.
@@ -157,8 +157,8 @@ class Axis:
 class Line:
     """A line through points (n,); it is broken where a number is missing."""
 
-    x: Numbers
-    y: Numbers
+    x: Array
+    y: Array
     label: str = ""  # in legend and read-out; without one it stands in neither
     colour: str = INK
     dashes: Dashes = ()
@@ -172,9 +172,9 @@ class Line:
 class Area:
     """What lies between two lines over x, all (n,)."""
 
-    x: Numbers
-    low: Numbers
-    high: Numbers
+    x: Array
+    low: Array
+    high: Array
     label: str = ""
     colour: str = INK
     opacity: float = 0.25
@@ -185,10 +185,10 @@ class Area:
 class Boxes:
     """Rectangles, all (n,): bars, stretches of time, bands that say little. Infinite: to the edge."""
 
-    left: Numbers
-    right: Numbers
-    low: Numbers
-    high: Numbers
+    left: Array
+    right: Array
+    low: Array
+    high: Array
     label: str = ""
     colour: str = INK
     opacity: float = 1.0
@@ -201,7 +201,7 @@ class Boxes:
 class Rules:
     """Lines across the panel, or short ones at its edge, at places (n,) of the axis `along`."""
 
-    at: Numbers
+    at: Array
     along: str = "x"
     label: str = ""
     colour: str = MUTED
@@ -231,7 +231,7 @@ class Field:
 
     x: tuple[float, float]  # edges
     y: tuple[float, float]
-    values: Numbers
+    values: Array
     label: str  # of the scale of colours
     low: float
     high: float
@@ -242,8 +242,8 @@ class Field:
 class Shape:
     """A closed outline through points (n,), for drawings."""
 
-    x: Numbers
-    y: Numbers
+    x: Array
+    y: Array
     fill: str = ""
     colour: str = INK  # of the outline; empty for none
     width: float = 0.8

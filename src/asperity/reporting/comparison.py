@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 import xarray
 
-from asperity.reporting import chart, data
+from asperity.arguments import Array
+from asperity.reporting import data
 from asperity.results import variable
 from asperity.schema import Entry, bearing, contact, provenance, rolling, spectra
 from asperity.spectra import a_weighted_total, level_of
@@ -32,7 +33,7 @@ RATIOS = (contact.WORKING_STIFFNESS.name, "stiffness", bearing.BAND_VELOCITY.nam
 CHOSEN_CELLS = "contact.rim_cells"
 """Key of which runs may differ where none gives it: `contact.RIM_CELLS` says what was chosen."""
 Variables = dict[str, xarray.Variable]
-Curve = tuple[chart.Numbers, chart.Numbers]
+Curve = tuple[Array, Array]
 
 
 @dataclass(frozen=True, eq=False)
@@ -236,13 +237,13 @@ def _with_differences(table: xarray.Dataset, told: Mapping[str, Mapping[str, str
     return xarray.Dataset(found)
 
 
-def _variable(dims: Sequence[str], numbers: chart.Numbers, units: str, meaning: str) -> xarray.Variable:
+def _variable(dims: Sequence[str], numbers: Array, units: str, meaning: str) -> xarray.Variable:
     finite = np.where(np.isfinite(numbers), numbers, np.nan)
     missing = {} if np.isfinite(finite).all() else {"missing": NO_VALUE}
     return variable(dims, finite, units, meaning, **missing)
 
 
-def _centres(found: xarray.Dataset | xarray.DataArray) -> chart.Numbers:
+def _centres(found: xarray.Dataset | xarray.DataArray) -> Array:
     """Centres of bands, Hz, by their places."""
     return np.array([10.0 ** (place / 10.0) for place in found["place"].values.tolist()])
 

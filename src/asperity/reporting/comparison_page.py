@@ -6,8 +6,9 @@ from dataclasses import replace
 import numpy as np
 import xarray
 
+from asperity.arguments import Array, Flags
 from asperity.reporting import chart, data, headline, page, panels, tables
-from asperity.reporting.chart import INK, MUTED, Axis, Drawn, Flags, Line, Numbers, Panel
+from asperity.reporting.chart import INK, MUTED, Axis, Drawn, Line, Panel
 from asperity.reporting.comparison import DEVIATION, MAIN, OF_CONTACT, UNLIKE_RUNS, ComparedRuns
 from asperity.reporting.figure import PageFigure
 from asperity.reporting.tables import Cell, ReportTable, in_digits, number_cells, text_cells
@@ -137,7 +138,7 @@ def _others_drawn(of: ComparedRuns) -> str:
     return " and ".join(name for r, name in enumerate(of.names) if of.another_texture(r))
 
 
-def _chance(table: xarray.Dataset, run: int) -> Numbers:
+def _chance(table: xarray.Dataset, run: int) -> Array:
     """Standard deviation of the level differences of a run to the first by chance, dB (bands,).
 
     Of records that know nothing of each other; runs over the same texture differ by less.
@@ -159,7 +160,7 @@ MOST_RUNS = len(RUN_COLOURS)
 """That can be told apart."""
 
 
-def _of_run(of: ComparedRuns, number: int, x: Numbers, y: Numbers, marker: str = "o") -> Line:
+def _of_run(of: ComparedRuns, number: int, x: Array, y: Array, marker: str = "o") -> Line:
     """A line of a run by its number, from 0."""
     dashes = RUN_DASHES[number % len(RUN_DASHES)]
     return Line(x, y, of.names[number], RUN_COLOURS[number], dashes, 1.6, marker)

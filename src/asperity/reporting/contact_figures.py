@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 from xarray import DataTree
 
+from asperity.arguments import Array
 from asperity.reporting import chart, data, panels
-from asperity.reporting.chart import BLUE, GREEN, INK, Axis, Boxes, Drawn, Line, Mark, Numbers, Panel
+from asperity.reporting.chart import BLUE, GREEN, INK, Axis, Boxes, Drawn, Line, Mark, Panel
 from asperity.reporting.figure import Lines, Of, Series, field, figure
 from asperity.reporting.texture_figures import map_panel
 from asperity.schema import Entry, contact, rolling
@@ -29,7 +30,7 @@ def _semi_axes(tree: DataTree) -> tuple[float, float] | None:
     return (along, across or along) if along else None
 
 
-def _outline(tree: DataTree, x: Numbers, y: Numbers) -> list[Line]:
+def _outline(tree: DataTree, x: Array, y: Array) -> list[Line]:
     """Outline of Hertz's contact, black on white: it crosses all colours of a map."""
     semi_axes = _semi_axes(tree)
     size, _ = data.length_unit(np.ptp(x))
@@ -155,7 +156,7 @@ def _curve(lines: Lines, mean: Entry, spread: Entry, size: float, label: str) ->
     return marks
 
 
-def _hertz(tree: DataTree, approach: Numbers, power: float, size: float) -> list[Mark]:
+def _hertz(tree: DataTree, approach: Array, power: float, size: float) -> list[Mark]:
     """Draw Hertz's closed form K δ^power from where the smooth bodies touch: there is none below."""
     constant = data.number(tree, contact.HERTZ_CONSTANT)
     if constant is None or approach.max() <= 0:
@@ -205,7 +206,7 @@ def _of_states(*entries: Entry) -> tuple[Of, ...]:
     )
 
 
-def _by_state(lines: Lines, entry: Entry) -> dict[float, Numbers]:
+def _by_state(lines: Lines, entry: Entry) -> dict[float, Array]:
     return {series.places["approach"]: series.values for series in lines.of(entry)}
 
 
@@ -220,7 +221,7 @@ def _drawn_states(tree: DataTree, lines: Lines) -> list[float]:
     return filled[picks].tolist()
 
 
-def _level(ratio: Numbers) -> Numbers:
+def _level(ratio: Array) -> Array:
     return 20 * np.log10(np.maximum(ratio, 10 ** (FLOOR / 20 - 1)))
 
 

@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 import numpy as np
 from xarray import DataArray, DataTree
 
-from asperity.arguments import shown
+from asperity.arguments import Array, Flags, shown
 from asperity.errors import InputError
 from asperity.reporting import chart
 from asperity.schema import Attribute, Entry, bearing, provenance, rolling, spectra
@@ -74,7 +74,7 @@ def variable_of(tree: DataTree, entry: Entry) -> DataArray:
     return found.transpose(*entry.dims, missing_dims="ignore")
 
 
-def values(tree: DataTree, entry: Entry) -> chart.Numbers:
+def values(tree: DataTree, entry: Entry) -> Array:
     """Numbers of an entry, which must exist."""
     return np.asarray(variable_of(tree, entry).values, dtype=float)
 
@@ -189,7 +189,7 @@ def main_law(tree: DataTree, entry: Entry) -> str:
     return held_laws(tree, entry)[0]
 
 
-def of_law(tree: DataTree, entry: Entry, law: str) -> chart.Numbers:
+def of_law(tree: DataTree, entry: Entry, law: str) -> Array:
     """Numbers of one law, at the first of several contacts, other dimensions in the order of the schema."""
     found = variable_of(tree, entry)
     row = [str(name) for name in found["law"].values].index(law)
@@ -198,7 +198,7 @@ def of_law(tree: DataTree, entry: Entry, law: str) -> chart.Numbers:
     )
 
 
-def of_contacts(tree: DataTree, entry: Entry, law: str) -> chart.Numbers:
+def of_contacts(tree: DataTree, entry: Entry, law: str) -> Array:
     """Numbers of one law at all contacts, these first (c, …)."""
     found = variable_of(tree, entry).sel(law=law)
     several = rolling.CONTACT.name in found.dims
@@ -253,7 +253,7 @@ def of_first_contact(tree: DataTree) -> str:
     return f"Of contact 1 of {count}; the others are in the chapter All contacts." if others else ""
 
 
-def doubtful(tree: DataTree, product: Entry) -> chart.Flags:
+def doubtful(tree: DataTree, product: Entry) -> Flags:
     """Bands whose levels say little: the `product` of bandwidth and averaging time is small.
 
     Of force levels also those that still hold the start of the record.
@@ -296,7 +296,7 @@ PREFIXED = ("m", "N", "N/m", "Pa", "s", "Hz", "W", "J", "m/s")
 """Units before which a prefix is read."""
 
 
-def unit_of_quantity(name: str, units: str, numbers: chart.Numbers) -> tuple[float, str]:
+def unit_of_quantity(name: str, units: str, numbers: Array) -> tuple[float, str]:
     """Unit in which a quantity of a study reads well: its size in SI, and its symbol, empty of a count."""
     if units == "1":
         return (0.01, "%") if name.endswith("share") else (1.0, "")

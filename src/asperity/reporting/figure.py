@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 from xarray import DataTree
 
-from asperity.arguments import nearest, shown
+from asperity.arguments import Array, nearest, shown
 from asperity.errors import InputError
 from asperity.files import atomic_write, write_bytes
 from asperity.reporting import data
-from asperity.reporting.chart import Chart, Numbers, Panel, envelope
+from asperity.reporting.chart import Chart, Panel, envelope
 from asperity.reporting.headline import Answers
 from asperity.reporting.tables import ReportTable, chart_tables, numbers_table
 from asperity.schema import Entry
@@ -28,7 +28,7 @@ class Series:
 
     name: str
     units: str
-    values: Numbers
+    values: Array
     entry: Entry | None = None  # whose numbers these are
     label: str = ""  # what it is called where it is drawn
     places: Mapping[str, Any] = dataclasses.field(default_factory=dict)  # along dimensions told apart
@@ -105,12 +105,12 @@ class Lines:
         return [s for s in self.lines if s.entry in entries and places.items() <= s.places.items()]
 
     @property
-    def at(self) -> Numbers:
+    def at(self) -> Array:
         """What the lines are drawn over."""
         assert self.x is not None
         return self.x.values
 
-    def columns(self, stretches: int = 0) -> dict[str, Numbers]:
+    def columns(self, stretches: int = 0) -> dict[str, Array]:
         """Of the CSV file: ``"quantity [unit]"`` → numbers, all of one length, in SI units.
 
         Of long lines, if asked, where each of so many stretches begins, and its lowest and highest number.
@@ -153,7 +153,7 @@ class PageFigure:
     caption: str
     chart: Chart
     file: str = ""  # with its numbers, beside the page
-    columns: Mapping[str, Numbers] = dataclasses.field(default_factory=dict)  # of that file
+    columns: Mapping[str, Array] = dataclasses.field(default_factory=dict)  # of that file
     foremost: Sequence[str] = ()  # heads of the columns that are read first
 
     @classmethod
@@ -241,7 +241,7 @@ class Chapter:
     answers: Callable[[DataTree], Answers | None] | None = None  # what the top of the page says of it
 
 
-def columns_text(columns: Mapping[str, Numbers]) -> str:
+def columns_text(columns: Mapping[str, Array]) -> str:
     """Comma-separated text: a header ``quantity [unit]``, then one row per value, exact to the last bit.
 
     A missing number (NaN) is an empty field.
@@ -251,7 +251,7 @@ def columns_text(columns: Mapping[str, Numbers]) -> str:
     return csv_text(list(columns), []) + "".join(f"{','.join(row)}\n" for row in zip(*fields, strict=True))
 
 
-def write_columns(columns: Mapping[str, Numbers], path: Path) -> Path:
+def write_columns(columns: Mapping[str, Array], path: Path) -> Path:
     """Write `columns` to the file at `path`, completely or not at all."""
     return write_bytes(path, columns_text(columns).encode("utf-8"))
 

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from asperity.arguments import Array
 from asperity.reporting import chart, panels
-from asperity.reporting.chart import Area, Axis, Drawn, Line, Numbers, Panel
+from asperity.reporting.chart import Area, Axis, Drawn, Line, Panel
 
 MOST_PANELS = 8
 """Measurements that are drawn; the CSV file has all."""
@@ -34,11 +35,11 @@ class Compared:
     units: str
     axis: str
     title: str
-    at: Numbers
-    measured: Numbers
-    before: Numbers
-    fitted: Numbers
-    deviation: Numbers
+    at: Array
+    measured: Array
+    before: Array
+    fitted: Array
+    deviation: Array
     decade: float
 
     @property
@@ -48,7 +49,7 @@ class Compared:
         return "Hz" in self.axis and bool(np.abs(places - np.rint(places)).max() < 1e-6)
 
     @property
-    def ends(self) -> tuple[Numbers, Numbers]:
+    def ends(self) -> tuple[Array, Array]:
         """Ends of the 95 % interval of what was measured."""
         by = TWICE * self.deviation
         if not self.decade:

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from xarray import DataTree
 
-from asperity.reporting import chart, data
+from asperity.arguments import Array
+from asperity.reporting import data
 from asperity.reporting.tables import OFF, ReportTable, error_on_map, setting_names, setting_numbers
 from asperity.schema import contact, convergence, provenance, rolling
 from asperity.spectra import nominal_frequency
@@ -194,7 +195,7 @@ def _loss(tree: DataTree, main: str) -> Iterator[HeadlineNumber]:
     yield HeadlineNumber("time without contact", value, told)
 
 
-def deciding_bands(bands: chart.Numbers, level: chart.Numbers) -> str:
+def deciding_bands(bands: Array, level: Array) -> str:
     """The fewest one-third octaves (b,), Hz, that hold half the energy of levels (b,), dB, in words.
 
     As ``"the band of 1.6 kHz"``, ``"the bands of 500 Hz and 800 Hz to 1.25 kHz"``.

@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 from xarray import DataTree
 
+from asperity.arguments import Array, Flags
 from asperity.reporting import chart, data, figure
-from asperity.reporting.chart import Axis, Flags, Line, Mark, Numbers, Panel
+from asperity.reporting.chart import Axis, Line, Mark, Panel
 from asperity.schema import Entry, rolling, spectra
 from asperity.spectra import LEAST_PRODUCT, MOST_START
 
@@ -24,7 +25,7 @@ def frequency_axis(low: float, high: float, label: str = "frequency / Hz") -> Ax
     return Axis(label, float(low), float(high), log=True, ticks=ticks, minor=minor, linked=chart.FREQUENCY)
 
 
-def band_axis(bands: Numbers, label: str = "", name: Callable[[float], str] = data.nominal_band) -> Axis:
+def band_axis(bands: Array, label: str = "", name: Callable[[float], str] = data.nominal_band) -> Axis:
     """Logarithmic axis with every one-third octave named, of frequencies unless it has another label."""
     ticks = tuple((band, name(band)) for band in bands.tolist())
     low = float(bands[0] / EDGE)
@@ -46,7 +47,7 @@ def long_waves_left(axis: Axis, label: str, speed: float | None, linked: str = "
     return replace(axis, low=axis.high, high=axis.low, second=second, linked=linked)
 
 
-def log_axis(label: str, found: Sequence[Numbers], lowest: float = 0.0) -> Axis:
+def log_axis(label: str, found: Sequence[Array], lowest: float = 0.0) -> Axis:
     """Logarithmic axis that holds all positive values, at least `lowest`, between two of 1, 2, 5, 10, …"""
     positive = np.concatenate([each[each > 0] for each in found])
     if positive.size == 0:
@@ -65,7 +66,7 @@ def words_axis(words: Sequence[str], label: str = "", *, margin: float = 0.5, do
     return Axis(label, *((high, low) if down else (low, high)), ticks=ticks)
 
 
-def levels_axis(label: str, levels: Iterable[Numbers], span: float = 80.0, step: float = 10.0) -> Axis:
+def levels_axis(label: str, levels: Iterable[Array], span: float = 80.0, step: float = 10.0) -> Axis:
     """Axis in dB that holds all the peaks, and at most `span` dB below the highest."""
     finite = np.concatenate([np.zeros(0), *(np.ravel(each)[np.isfinite(np.ravel(each))] for each in levels)])
     if finite.size == 0:
@@ -80,7 +81,7 @@ def stretches(flags: Flags) -> np.ndarray:
     return edges.reshape(-1, 2) - np.array([0, 1])
 
 
-def shade(left: Numbers, right: Numbers, colour: str = chart.GRID, **look: Any) -> chart.Boxes:
+def shade(left: Array, right: Array, colour: str = chart.GRID, **look: Any) -> chart.Boxes:
     """Stretches of an axis, shaded from bottom to top."""
     whole = np.full(left.shape, np.inf)
     return chart.Boxes(left, right, -whole, whole, colour=colour, **look)
@@ -94,7 +95,7 @@ def zero(colour: str = chart.MUTED, width: float = 0.9) -> chart.Rules:
 # --- bands that say little
 
 
-def doubtful_boxes(bands: Numbers, doubtful: Flags, labelled: bool = True) -> list[Mark]:
+def doubtful_boxes(bands: Array, doubtful: Flags, labelled: bool = True) -> list[Mark]:
     """Shades of the bands (by their centres) whose levels say little, and their name."""
     if not doubtful.any():
         return []
@@ -143,7 +144,7 @@ def products(product: Entry) -> Callable[[DataTree], Iterable[figure.Series]]:
 
 def styled(
     tree: DataTree,
-    x: Numbers,
+    x: Array,
     lines: Iterable[figure.Series],
     *,
     size: float = 1.0,
@@ -183,7 +184,7 @@ DRAWN = "drawn as mean power per 1/24 octave where the lines are denser than tha
 
 def narrow_levels(
     tree: DataTree, lines: figure.Lines, shown: Iterable[figure.Series], reference: float = 1.0
-) -> tuple[Numbers, list[figure.Series]]:
+) -> tuple[Array, list[figure.Series]]:
     """Levels of PSDs in dB within the drawn range, no denser than a line can show."""
     low, high = frequency_range(tree)
     kept = (lines.at >= low) & (lines.at <= high) & (lines.at > 0)
@@ -238,7 +239,7 @@ HEADROOM = 0.5
 """Share of the main law's range by which other laws may widen its axis."""
 
 
-def time_axis(tree: DataTree, time: Numbers) -> tuple[Axis, float]:
+def time_axis(tree: DataTree, time: Array) -> tuple[Axis, float]:
     """Axis from end to end of a piece of the run, and the size of its unit, that of the whole run."""
     unit, symbol = data.time_unit(float(np.ptp(data.values(tree, rolling.TIME))))
     axis = Axis(f"time / {symbol}", float(time[0]) / unit, float(time[-1]) / unit, linked=chart.TIME)

@@ -12,8 +12,9 @@ from typing import Any
 
 import numpy as np
 
+from asperity.arguments import Array
 from asperity.reporting import chart
-from asperity.reporting.chart import Axis, Chart, Field, Line, Mark, Numbers, Panel, envelope
+from asperity.reporting.chart import Axis, Chart, Field, Line, Mark, Panel, envelope
 
 LONG = 1000
 """Numbers from which an array is kept in levels."""
@@ -30,7 +31,7 @@ class Arrays:
         self._bytes: list[bytes] = []
         self._known: dict[tuple[bytes, bool, int], int] = {}
 
-    def place(self, numbers: Numbers, linear: bool, levels: int = LEVELS) -> int:
+    def place(self, numbers: Array, linear: bool, levels: int = LEVELS) -> int:
         """Number under which an array is kept; one that is drawn on a `linear` axis may be rounded."""
         flat = np.ascontiguousarray(numbers, dtype=np.float64).ravel()
         key = (flat.tobytes(), linear, levels)
@@ -47,7 +48,7 @@ class Arrays:
         return base64.b64encode(zlib.compress(b"".join(self._bytes), 6)).decode("ascii")
 
 
-def _kept(numbers: Numbers, linear: bool, levels: int) -> tuple[dict[str, float], bytes]:
+def _kept(numbers: Array, linear: bool, levels: int) -> tuple[dict[str, float], bytes]:
     """How an array is kept, and its bytes."""
     if (steps := _steps(numbers)) is not None:
         return steps, b""
@@ -61,7 +62,7 @@ def _kept(numbers: Numbers, linear: bool, levels: int) -> tuple[dict[str, float]
     return {}, _planes(single)
 
 
-def _steps(numbers: Numbers) -> dict[str, float] | None:
+def _steps(numbers: Array) -> dict[str, float] | None:
     """Start and step of numbers that are equally spaced."""
     if numbers.size < 3 or not np.isfinite(numbers).all():
         return None
@@ -71,7 +72,7 @@ def _steps(numbers: Numbers) -> dict[str, float] | None:
     return {"start": start, "step": step} if off <= 1e-6 * abs(step) else None
 
 
-def _levels(heights: Numbers) -> bytes:
+def _levels(heights: Array) -> bytes:
     """Second differences of levels, modulo 2¹⁶; level 0 is a missing number, 1 the lowest."""
     levels = np.nan_to_num(np.rint(heights) + 1.0, nan=0.0).astype(np.int64)
     changes = np.diff(np.diff(levels, prepend=0), prepend=0)

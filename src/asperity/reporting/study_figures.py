@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 import xarray
 
+from asperity.arguments import Array
 from asperity.reporting import chart, data, panels
-from asperity.reporting.chart import INK, Axis, Boxes, Drawn, Line, Mark, Numbers, Panel, sequence_styles
+from asperity.reporting.chart import INK, Axis, Boxes, Drawn, Line, Mark, Panel, sequence_styles
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT, FORCE_LEVEL, LAW, START_SHARE
 from asperity.spectra import nominal_length, say_little
 from asperity.written_numbers import capital
@@ -73,7 +74,7 @@ def ensemble_figure(bands: xarray.Dataset, looks: Looks) -> Drawn:
 
 
 def optimised_figure(
-    columns: Mapping[str, Numbers], heard: str, units: str, colours: Mapping[str, str]
+    columns: Mapping[str, Array], heard: str, units: str, colours: Mapping[str, str]
 ) -> Drawn:
     """The texture above, and below what is heard of it in each band, of each law that has a colour.
 
@@ -275,19 +276,19 @@ def _largest(held: xarray.DataArray, dim: str) -> Any:
     return held[dim].values[::-1][np.nan_to_num(most, nan=-np.inf)[::-1].argmax()]
 
 
-def _along(found: xarray.DataArray, key: str, place: Mapping[str, Any]) -> Numbers:
+def _along(found: xarray.DataArray, key: str, place: Mapping[str, Any]) -> Array:
     """A quantity over a key and over the places on a body (key, place)."""
     held = found.sel({dim: at for dim, at in place.items() if dim in found.dims}).transpose(key, ...)
     return np.asarray(held.values, dtype=float).reshape(held.sizes[key], -1)
 
 
-def _over_places(level: Numbers) -> Numbers:
+def _over_places(level: Array) -> Array:
     """Energy mean of levels at several places."""
     one = level.shape[1] == 1
     return level[:, 0] if one else np.asarray(10.0 * np.log10(np.nanmean(10.0 ** (level / 10.0), axis=1)))
 
 
-def _places(key: xarray.DataArray) -> Numbers:
+def _places(key: xarray.DataArray) -> Array:
     """Places of the values of a key on its axis: themselves, or their numbers where they are words."""
     is_words = key.dtype.kind == "U"
     return np.array(range(key.size) if is_words else data.typed_values(key), dtype=float)

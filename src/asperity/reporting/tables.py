@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from xarray import DataTree
 
+from asperity.arguments import Array, Flags
 from asperity.reporting import chart, data
 from asperity.schema import Attribute, Entry, contact, convergence, provenance, rolling, spectra
 from asperity.spectra import nominal_frequency, say_little
@@ -62,7 +63,7 @@ def number_cells(
     return [Cell(told(float(each)) if np.isfinite(each) else "–", own) for each, own in cells]
 
 
-def band_cells(bands: Iterable[float], doubtful: chart.Flags) -> list[Cell]:
+def band_cells(bands: Iterable[float], doubtful: Flags) -> list[Cell]:
     """Column of one-third octaves, in grey where they say little."""
     return number_cells(
         bands, data.nominal_band, ["number faint" if doubt else "number" for doubt in doubtful]
@@ -70,7 +71,7 @@ def band_cells(bands: Iterable[float], doubtful: chart.Flags) -> list[Cell]:
 
 
 def change_cells(
-    changes: chart.Numbers, doubtful: chart.Flags, off: float = 1.0, far: float = 3.0, places: int = 1
+    changes: Array, doubtful: Flags, off: float = 1.0, far: float = 3.0, places: int = 1
 ) -> list[Cell]:
     """Column of level differences, shaded above two sizes; in grey and in brackets where they say little."""
 
@@ -114,7 +115,7 @@ def in_digits(count: int) -> Writer:
     return partial(data.plain, digits=count)
 
 
-def numbers_table(columns: Mapping[str, chart.Numbers], foremost: Sequence[str] = ()) -> ReportTable:
+def numbers_table(columns: Mapping[str, Array], foremost: Sequence[str] = ()) -> ReportTable:
     """Numbers of a figure by the heads of its CSV file; of many the first, the `foremost`, and some."""
     count = len(next(iter(columns.values())))
     heads = list(columns)
@@ -131,7 +132,7 @@ def numbers_table(columns: Mapping[str, chart.Numbers], foremost: Sequence[str] 
     return table("", "Numbers", cells, note)
 
 
-def _unrounded(numbers: chart.Numbers) -> chart.Numbers:
+def _unrounded(numbers: Array) -> Array:
     """A column with zeros where rounding beside its largest number left something else."""
     if numbers.dtype.kind != "f" or not numbers.size:
         return numbers
@@ -284,7 +285,7 @@ def setting_names(tree: DataTree) -> list[str]:
     return data.words(tree, convergence.SETTING)
 
 
-def setting_numbers(tree: DataTree, entry: Entry) -> chart.Numbers:
+def setting_numbers(tree: DataTree, entry: Entry) -> Array:
     """Numbers of an entry by setting, NaN where none is known."""
     return (
         data.values(tree, entry) if data.present(tree, entry) else np.full(len(setting_names(tree)), np.nan)
@@ -328,12 +329,12 @@ def settings_table(tree: DataTree) -> ReportTable | None:
 _CHANGES = (convergence.LARGEST_CHANGE, convergence.LARGEST_BAND, convergence.STIFFNESS_CHANGE)
 
 
-def _size_cells(sizes: chart.Numbers) -> list[Cell]:
+def _size_cells(sizes: Array) -> list[Cell]:
     looks = ["number" + size_look(each, OFF, FAR) for each in sizes]
     return number_cells(sizes, "{:.2f}", looks)
 
 
-def _largest_motion(tree: DataTree) -> chart.Numbers:
+def _largest_motion(tree: DataTree) -> Array:
     """Largest size of the change of the main law's motion, in the bands of the force."""
     if not data.present(tree, convergence.MOTION_LEVEL_CHANGE):
         return np.full(len(setting_names(tree)), np.nan)

@@ -7,20 +7,9 @@ from typing import Any
 import numpy as np
 from xarray import DataTree
 
+from asperity.arguments import Array
 from asperity.reporting import chart, data, panels
-from asperity.reporting.chart import (
-    BLUE,
-    INK,
-    MUTED,
-    VERMILLION,
-    Axis,
-    Chart,
-    Drawn,
-    Line,
-    Mark,
-    Numbers,
-    Panel,
-)
+from asperity.reporting.chart import BLUE, INK, MUTED, VERMILLION, Axis, Chart, Drawn, Line, Mark, Panel
 from asperity.reporting.data import length_unit
 from asperity.reporting.figure import Lines, Of, field, figure
 from asperity.schema import contact
@@ -39,9 +28,9 @@ NORMAL: tuple[str, chart.Dashes] = (MUTED, (3.7, 1.6))
 
 
 def map_panel(
-    x: Numbers,
-    y: Numbers,
-    numbers: Numbers,
+    x: Array,
+    y: Array,
+    numbers: Array,
     scale: tuple[str, float, float],
     *marks: Mark,
     equal: bool = True,
@@ -61,13 +50,13 @@ def map_panel(
     return Panel(along, Axis(f"y / {symbol_across}", low, high), (shown, *marks), equal=equal, **place)
 
 
-def _edges(points: Numbers, size: float) -> tuple[float, float]:
+def _edges(points: Array, size: float) -> tuple[float, float]:
     """Outer edges of the cells around evenly spaced points, m, in a unit of this size."""
     half = (points[1] - points[0]) / 2 if len(points) > 1 else 0.5
     return float(points[0] - half) / size, float(points[-1] + half) / size
 
 
-def height_scale(known: Numbers) -> tuple[float, str, float, float]:
+def height_scale(known: Array) -> tuple[float, str, float, float]:
     """Unit of heights and its symbol; limits in it about the mean that leave out 0.1 % at either end.
 
     Of `known_heights`, whose order changes.
@@ -79,13 +68,13 @@ def height_scale(known: Numbers) -> tuple[float, str, float, float]:
     return size, symbol, float(middle - reach) / size, float(middle + reach) / size
 
 
-def height_map(x: Numbers, y: Numbers, heights: Numbers, **place: Any) -> Panel:
+def height_map(x: Array, y: Array, heights: Array, **place: Any) -> Panel:
     """Heights (nx, ny) in m from above."""
     size, symbol, low, high = height_scale(known_heights([heights]))
     return map_panel(x, y, heights / size, (f"height / {symbol}", low, high), **place)
 
 
-def distribution(known: Numbers) -> tuple[Numbers, Numbers]:
+def distribution(known: Array) -> tuple[Array, Array]:
     """Distribution of heights (n,), m: edges of bins, and density in them, 1/m."""
     bins = int(np.clip(2 * len(known) ** (1 / 3), 10, 80))  # Rice's rule
     low = known.min()
@@ -98,7 +87,7 @@ def distribution(known: Numbers) -> tuple[Numbers, Numbers]:
 
 
 def height_histogram(
-    named: Mapping[str, tuple[Numbers, Numbers]], unit: tuple[float, str], **place: Any
+    named: Mapping[str, tuple[Array, Array]], unit: tuple[float, str], **place: Any
 ) -> Panel:
     """How often each height occurs, of one or two surfaces, with the normal distribution of the first."""
     size, symbol = unit
@@ -134,7 +123,7 @@ def psd_panel(spectra: Sequence[Line], *marks: Mark, **place: Any) -> Panel:
     return Panel(along, density, (*marks, *spectra), **place)
 
 
-def psd_line(wavenumber: Numbers, density: Numbers, label: str, *look: Any) -> Line:
+def psd_line(wavenumber: Array, density: Array, label: str, *look: Any) -> Line:
     """Power spectral density where there is any, smoothed for the eye."""
     kept = (wavenumber > 0) & (density > 0)
     return Line(*chart.smooth_on_log_axis(wavenumber[kept], density[kept]), label, *look)
@@ -262,11 +251,11 @@ def running_in(tree: DataTree, lines: Lines) -> Drawn:
 
 # --- of surface files
 
-NamedSpectra = Mapping[str, tuple[Numbers, Numbers]]
+NamedSpectra = Mapping[str, tuple[Array, Array]]
 """Wavenumbers above zero, cycles/m, and one-sided PSD, m³, by name."""
 
 
-def surface_chart(heights: Numbers, spacing: tuple[float, float], spectra: NamedSpectra) -> Chart:
+def surface_chart(heights: Array, spacing: tuple[float, float], spectra: NamedSpectra) -> Chart:
     """Lay out what a map holds: its heights from above, their distribution, and their spectra.
 
     Heights (nx, ny), and distances along x and y, m, positive out of the material; NaN where missing.
@@ -283,7 +272,7 @@ def surface_chart(heights: Numbers, spacing: tuple[float, float], spectra: Named
 
 
 def lines_chart(
-    lines: Sequence[Numbers], spacing: float, spectra: NamedSpectra, octaves: ThirdOctaves | None = None
+    lines: Sequence[Array], spacing: float, spectra: NamedSpectra, octaves: ThirdOctaves | None = None
 ) -> Chart:
     """Lay out lines measured side by side, one above the other, with their distribution and their spectra.
 
@@ -295,7 +284,7 @@ def lines_chart(
 
 
 def _with_statistics(
-    above: Panel, known: Numbers, spectra: NamedSpectra, octaves: ThirdOctaves | None, *, beside: bool
+    above: Panel, known: Array, spectra: NamedSpectra, octaves: ThirdOctaves | None, *, beside: bool
 ) -> Chart:
     """What heights look like, and how often each occurs, beside it or below, and their spectra."""
     unit = height_scale(known)[:2]
@@ -305,7 +294,7 @@ def _with_statistics(
     return Chart((above, histogram, ratio, *_spectra_panels(spectra, octaves, beside=beside)))
 
 
-def _ratio_panel(known: Numbers, unit: tuple[float, str], **place: Any) -> Panel:
+def _ratio_panel(known: Array, unit: tuple[float, str], **place: Any) -> Panel:
     """Share of the points that reach a height."""
     ratio, height = material_ratio_curve(known)
     curve = Line(100.0 * ratio, height / unit[0], colour=VERMILLION)
@@ -343,7 +332,7 @@ def _octaves_panel(octaves: ThirdOctaves, **place: Any) -> Panel:
     return Panel(along, Axis("roughness / dB re 1 µm"), tuple(marks), title=title, **place)
 
 
-def _lines_panel(lines: Sequence[Numbers], spacing: float, known: Numbers) -> Panel:
+def _lines_panel(lines: Sequence[Array], spacing: float, known: Array) -> Panel:
     """Lines below each other, and a bar that says how high they are drawn."""
     size, symbol = height_scale(known)[:2]
     ends = np.percentile(known, [0.1, 99.9], overwrite_input=True)

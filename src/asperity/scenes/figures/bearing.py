@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from xarray import DataTree
 
+from asperity.arguments import Array
 from asperity.diagnostics import Kurtogram, one_anderon
 from asperity.diagnostics.kurtogram import LEAST_POWER
 from asperity.reporting import chart, data, panels
@@ -56,14 +57,14 @@ def _main(tree: DataTree) -> str:
     return data.main_law(tree, bearing.LINES_FOUND)
 
 
-def _degrees(azimuth: chart.Numbers) -> chart.Numbers:
+def _degrees(azimuth: Array) -> Array:
     return np.degrees(np.angle(np.exp(1j * azimuth)))
 
 
 # --- how it carries its load
 
 
-def _at(radius: Any, azimuth: Any) -> tuple[chart.Numbers, chart.Numbers]:
+def _at(radius: Any, azimuth: Any) -> tuple[Array, Array]:
     """Places on paper: the load points down, and what turns turns anticlockwise."""
     return np.atleast_1d(radius * np.sin(azimuth)), np.atleast_1d(-radius * np.cos(azimuth))
 
@@ -599,7 +600,7 @@ def bearing_answers(tree: DataTree) -> Answers:
     return Answers(f"{lead}.", more, (*numbers, heaviest))
 
 
-def _where(tree: DataTree, velocities: chart.Numbers) -> str:
+def _where(tree: DataTree, velocities: Array) -> str:
     """At which of several accelerometers the first velocity is, and the largest; empty of one."""
     angles = np.degrees(data.values(tree, bearing.SENSOR))
     if len(angles) == 1:

@@ -5,8 +5,8 @@ import re
 import numpy as np
 import xarray
 
+from asperity.arguments import Array
 from asperity.reporting import data, headline, tables
-from asperity.reporting.chart import Numbers
 from asperity.scenes import schema
 from asperity.scenes.figures.sources import WHOLE, Sources
 
@@ -72,7 +72,7 @@ class Effects:
         ]
         return f"; as much but for chance: {'; '.join(told)}" if told else ""
 
-    def _words(self, effect: Numbers, error: Numbers) -> str:
+    def _words(self, effect: Array, error: Array) -> str:
         own = np.array([part != WHOLE for part in self.parts])
         sure = own & (np.abs(effect) >= HEARD) & ~(np.abs(effect) <= error)
         order = sorted(np.flatnonzero(sure).tolist(), key=lambda n: -abs(effect[n]))
@@ -85,7 +85,7 @@ class Effects:
         after = self.loudest(effect)
         return f"{sentence[:1].upper()}{sentence[1:]}{f'; loudest then: {after}' if after != before else ''}."
 
-    def loudest(self, effect: Numbers | float = 0.0) -> str:
+    def loudest(self, effect: Array | float = 0.0) -> str:
         """The loudest body, or those about equal, with an effect; nothing where parts are not told apart."""
         level = (self.level + np.nan_to_num(effect)).tolist()
         parts = {part: each for part, each in zip(self.parts, level, strict=True) if part not in ("", WHOLE)}

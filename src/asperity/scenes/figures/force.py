@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from xarray import DataTree
 
+from asperity.arguments import Array, Flags
 from asperity.reporting import chart, data, panels
 from asperity.reporting.chart import Drawn, Panel
 from asperity.reporting.figure import Lines, Of, Series, figure
@@ -112,14 +113,14 @@ AROUND_PEAK = 0.024
 """Length of the piece around the largest force, s."""
 
 
-def lost(tree: DataTree, law: str, force: chart.Numbers) -> chart.Flags:
+def lost(tree: DataTree, law: str, force: Array) -> Flags:
     """Where contact is lost, as `force` of `law` shows; nowhere if the contact pulls as well."""
     share = rolling.CONTACT_LOSS_SHARE
     never = law in data.laws(tree, share) and data.of_law(tree, share, law) == 0
     return np.zeros(len(force), dtype=bool) if never or data.law_entry(tree, law).may_pull else force <= 0
 
 
-def _main_force(tree: DataTree) -> chart.Numbers:
+def _main_force(tree: DataTree) -> Array:
     return data.of_law(tree, rolling.CONTACT_FORCE, data.main_law(tree, rolling.CONTACT_FORCE))
 
 
@@ -151,7 +152,7 @@ def _forces(tree: DataTree, lines: Lines, **look: Any) -> Iterator[Panel]:
         yield Panel(axis, rows, shown, height=0.6 + 0.16 * len(bars))
 
 
-def _bars(tree: DataTree, series: Series, time: chart.Numbers, row: int) -> chart.Boxes:
+def _bars(tree: DataTree, series: Series, time: Array, row: int) -> chart.Boxes:
     """Stretches without contact in a row, half a time step longer at either end than from first to last."""
     first, last = panels.stretches(lost(tree, series.law, series.values)).T
     half = 0.5 * (time[1] - time[0])

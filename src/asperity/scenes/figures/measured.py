@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from xarray import DataTree
 
-from asperity.arguments import NDArray
+from asperity.arguments import Array, Flags, NDArray
 from asperity.reference.railways import PassByLimit
 from asperity.reporting import chart, data, figure, panels, tables
 from asperity.reporting.tables import Cell, ReportTable, table, text_cells
@@ -110,7 +110,7 @@ TWICE = 1.96
 NEXT = "Next: asperity fit CASE, which fits keys of the case to it."
 
 
-def _deviation(apart: chart.Numbers, deviation: chart.Numbers) -> str:
+def _deviation(apart: Array, deviation: Array) -> str:
     """Say how far measured bands are from computed ones (n,), dB, and what to do where that is too far.
 
     With the standard deviation of each difference, dB.
@@ -121,7 +121,7 @@ def _deviation(apart: chart.Numbers, deviation: chart.Numbers) -> str:
     return f"Measured over computed: {told}. {NEXT}" if outside else f"Measured over computed: {told}."
 
 
-def _how_far(apart: chart.Numbers, deviation: chart.Numbers, of: str) -> tuple[str, int]:
+def _how_far(apart: Array, deviation: Array, of: str) -> tuple[str, int]:
     """Say how far measured values (n,), dB, are from computed ones, and how many are too far."""
     known = np.isfinite(apart)
     outside = int(np.sum(np.abs(apart[known]) > TWICE * deviation[known]))
@@ -230,7 +230,7 @@ def _values_over(entry: Entry) -> figure.Columns:
 _NAMES = {beside.DEVIATION: "measured over computed", beside.UNCERTAINTY: "standard deviation"}
 
 
-def _over_frequency(tree: DataTree) -> chart.Flags:
+def _over_frequency(tree: DataTree) -> Flags:
     return np.array(["Hz" in axis for axis in _words(tree, beside.AXIS)], dtype=bool)
 
 
@@ -238,7 +238,7 @@ def _words(tree: DataTree, entry: Entry) -> NDArray[np.str_]:
     return data.variable_of(tree, entry).values.astype(str)
 
 
-def _frequencies(tree: DataTree) -> chart.Numbers:
+def _frequencies(tree: DataTree) -> Array:
     """All at which something was measured, rising, Hz."""
     return np.unique(data.values(tree, beside.AT)[_over_frequency(tree)])
 

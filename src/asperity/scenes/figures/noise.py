@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 from xarray import DataTree
 
+from asperity.arguments import Array
 from asperity.reference.railways import HARD
 from asperity.reporting import chart, data, headline, panels
-from asperity.reporting.chart import INK, MUTED, Axis, Drawn, Line, Mark, Note, Numbers, Panel, Rules
+from asperity.reporting.chart import INK, MUTED, Axis, Drawn, Line, Mark, Note, Panel, Rules
 from asperity.reporting.figure import Lines, Of, Series, figure
 from asperity.reporting.tables import ReportTable, in_digits, number_cells, table, text_cells
 from asperity.scenes import schema
@@ -256,7 +257,7 @@ def pass_by_level(tree: DataTree, lines: Lines) -> Drawn:
     )
 
 
-def _train(tree: DataTree, axles: Numbers) -> list[Mark]:
+def _train(tree: DataTree, axles: Array) -> list[Mark]:
     """Short rules where axles are opposite, and the pass-by time behind the lines."""
     passing = Rules(axles, colour=INK, dashes=(), width=1.4, short=True)
     front, rear = (data.number(tree, end) for end in (schema.FRONT_TIME, schema.REAR_TIME))

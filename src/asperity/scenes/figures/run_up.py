@@ -5,6 +5,7 @@ from collections.abc import Iterable
 import numpy as np
 from xarray import DataTree
 
+from asperity.arguments import Array
 from asperity.reporting import chart, data, panels
 from asperity.reporting.figure import Lines, Of, Series, figure
 from asperity.scenes.figures.bearing import COLOURS, multiples, named_part, tones_of
@@ -20,7 +21,7 @@ ACCELERATION = 1e-6
 LEVEL = "amplitude / dB re 1 µm/s²"
 
 
-def _level(amplitude: chart.Numbers) -> chart.Numbers:
+def _level(amplitude: Array) -> Array:
     """Levels of amplitudes, m/s², dB."""
     return 20.0 * np.log10(np.maximum(amplitude, 1e-6 * ACCELERATION) / ACCELERATION)
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from xarray import DataArray, DataTree
 
+from asperity.arguments import Array
 from asperity.reporting import data
-from asperity.reporting.chart import Numbers
 from asperity.scenes import schema
 from asperity.schema import Entry
 from asperity.spectra import energy_sum
@@ -98,7 +98,7 @@ def main_sources(tree: DataTree, entry: Entry) -> Sources | None:
     return Sources(levels.pop(WHOLE), levels, chance)
 
 
-def _known(found: DataArray, numbers: Numbers) -> dict[str, float]:
+def _known(found: DataArray, numbers: Array) -> dict[str, float]:
     """Numbers of a variable by what radiates; what is unknown is missing."""
     names = map(str, found["radiator"].values)
     return {name: float(each) for name, each in zip(names, numbers, strict=True) if np.isfinite(each)}

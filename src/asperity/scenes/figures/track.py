@@ -5,20 +5,9 @@ from dataclasses import replace
 import numpy as np
 from xarray import DataTree
 
+from asperity.arguments import Array
 from asperity.reporting import chart, data, panels
-from asperity.reporting.chart import (
-    INK,
-    MUTED,
-    VERMILLION,
-    Axis,
-    Drawn,
-    Line,
-    Mark,
-    Note,
-    Numbers,
-    Panel,
-    Rules,
-)
+from asperity.reporting.chart import INK, MUTED, VERMILLION, Axis, Drawn, Line, Mark, Note, Panel, Rules
 from asperity.reporting.figure import Lines, Of, figure
 from asperity.scenes import schema
 from asperity.scenes.figures.measured import MEASURED, over_bands
@@ -86,7 +75,7 @@ def sleeper_times(tree: DataTree, start: float, end: float, unit: float) -> list
     return [_short((time[0] + (sleepers - position[0]) / speed) / unit)]
 
 
-def sleepers_between(tree: DataTree, first: float, last: float, spacing: float) -> Numbers:
+def sleepers_between(tree: DataTree, first: float, last: float, spacing: float) -> Array:
     """Places of the sleepers between two others, m: equally spaced, or as bays of a cell that repeats."""
     if not data.present(tree, schema.BAY_LENGTH):
         return spacing * np.arange(np.ceil(first / spacing), np.floor(last / spacing) + 1)
@@ -96,7 +85,7 @@ def sleepers_between(tree: DataTree, first: float, last: float, spacing: float) 
     return every[(every >= first) & (every <= last)]
 
 
-def _short(at: Numbers) -> Rules:
+def _short(at: Array) -> Rules:
     return Rules(at, colour=INK, dashes=(), width=0.8, short=True)
 
 
@@ -322,7 +311,7 @@ def out_of_round(tree: DataTree, lines: Lines) -> Drawn:
     yield "An order n passes n times in each turn."
 
 
-def _heard(wavelength: Numbers, speed: float, changing: str) -> str:
+def _heard(wavelength: Array, speed: float, changing: str) -> str:
     """Say which one-third octaves of frequency bands of wavelength, m, cover at a speed, m/s.
 
     And of one that changes that it is the fastest.
@@ -337,7 +326,7 @@ def _heard(wavelength: Numbers, speed: float, changing: str) -> str:
     return f"{at}{speed:.4g} m/s they pass with {passed}: {of}{smooth}."
 
 
-def _contact(tree: DataTree, wavelength: Numbers) -> list[Mark]:
+def _contact(tree: DataTree, wavelength: Array) -> list[Mark]:
     """The length of the contact, where it is among the wavelengths."""
     length = 2 * (data.number(tree, contact.HERTZ_RADIUS) or 0.0)
     if not wavelength.min() < length < wavelength.max():
