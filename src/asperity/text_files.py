@@ -10,13 +10,12 @@ from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from asperity.arguments import no_file
+from asperity.arguments import Array, no_file
 from asperity.errors import InputError, printable
 from asperity.files import amount, write_bytes
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+    pass
 
 _MARKS = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 _NO_TEXT = {
@@ -141,7 +140,7 @@ def blocks_of_lines(content: str) -> Iterator[list[str]]:
         start = end
 
 
-def even_rows(lines: list[str], delimiter: str | None, decimal: str = ".") -> "NDArray[np.float64] | None":
+def even_rows(lines: list[str], delimiter: str | None, decimal: str = ".") -> "Array | None":
     """Numbers (rows, columns) of lines that hold nothing else, equally many in each, all at once.
 
     None where there is anything else: a word, a missing number, an empty line. As `number_in` reads them one
@@ -202,6 +201,14 @@ def number_in(text: str | bytes) -> float:
     except ValueError:
         words = text.decode("latin-1") if isinstance(text, bytes) else text
         return float(_FORTRAN.sub("e", words))
+
+
+def number_or_nan(text: str) -> float:
+    """The number that a text holds; NaN of any other text."""
+    try:
+        return number_in(text)
+    except ValueError:
+        return math.nan
 
 
 def in_thousands(words: Iterable[str]) -> str:

@@ -17,7 +17,8 @@ from asperity.reduction.stiffness import ForceCurve
 from asperity.rolling.bearing import BearingRings, roll_bearing
 from asperity.scenarios import run_time
 from asperity.scenarios.prepared_bearing import expected, prepare_bearing, raceways_of
-from asperity.scenarios.roller_raceways import OnRollerRaceway, on_surface, surface_on
+from asperity.scenarios.raceway_grids import raceway_on
+from asperity.scenarios.roller_raceways import OnRollerRaceway, on_surface
 from asperity.scenes.computed_bearing import compute_bearing
 from asperity.scenes.figures.bearing import _faults, along_roller, ball_contacts_table, films_table, load_zone
 from asperity.serving.contact_preview import PressedSample
@@ -45,7 +46,7 @@ CASE = {
 def test_waves_are_felt_as_under_a_flat_punch_of_the_half_width(order):
     """J₀(kb), the transform of 1/π√(b² − x²), at whatever load the patch is."""
     texture = AroundTexture(waves=(order,), amplitudes=(1e-7,))
-    on = on_surface(STRAIGHT, surface_on(STRAIGHT, LOAD, RADIUS, texture), LOAD)
+    on = on_surface(STRAIGHT, raceway_on(STRAIGHT, LOAD, RADIUS, texture), LOAD)
     half_width = STRAIGHT.semi_axes(STRAIGHT.approach(LOAD))[0]
     passed = 1e-7 * j0(order / RADIUS * half_width)
     assert np.ptp(on.felt) == pytest.approx(2.0 * abs(passed), rel=1e-3)
@@ -56,7 +57,7 @@ def test_waves_are_felt_as_under_a_flat_punch_of_the_half_width(order):
 def test_of_a_wave_few_states_are_laid_out_and_what_lies_between_them_is_not_missed():
     """J₀(kb) is nearly straight over the approach: b² grows with the load, that as δ^(10/9)."""
     texture = AroundTexture(waves=(12,), amplitudes=(1e-7,))
-    on = on_surface(STRAIGHT, surface_on(STRAIGHT, LOAD, RADIUS, texture), LOAD)
+    on = on_surface(STRAIGHT, raceway_on(STRAIGHT, LOAD, RADIUS, texture), LOAD)
     laid_out = on.build("areal").law.texture
     assert 2 < len(laid_out.approaches) < len(on.approaches) / 3
     axes = [STRAIGHT.semi_axes(each) for each in on.approaches]
@@ -71,7 +72,7 @@ def test_of_a_wave_few_states_are_laid_out_and_what_lies_between_them_is_not_mis
 def test_the_force_of_the_law_is_that_of_all_slices():
     """Between its knots, too, but for the kinks where slices begin to touch one by one."""
     crowned = SlicedContact(113e9, 3e-3, Crowning.iso(8e-3, 7.5e-3))
-    on = on_surface(crowned, surface_on(crowned, LOAD, RADIUS), LOAD, damping=3.0)
+    on = on_surface(crowned, raceway_on(crowned, LOAD, RADIUS), LOAD, damping=3.0)
     between = np.sqrt(on.approaches[1:] * on.approaches[:-1])
     assert on.curve.force(between) == pytest.approx(crowned.pressed(between).force, rel=1e-2)
     law = on.build("areal")
@@ -85,7 +86,7 @@ def test_a_fault_takes_its_part_of_the_length_or_of_the_width_of_a_roller():
 
     def sunk(length):
         spall = Fault("spall", length=length, width=width, depth=1e-4)
-        return -on_surface(STRAIGHT, surface_on(STRAIGHT, LOAD, RADIUS, faults=[spall]), LOAD).over_faults
+        return -on_surface(STRAIGHT, raceway_on(STRAIGHT, LOAD, RADIUS, faults=[spall]), LOAD).over_faults
 
     long, short = sunk(1e-3), sunk(4e-5)
     assert long.max() == pytest.approx(smooth * ((30 / 41) ** -0.9 - 1.0), rel=0.03)
@@ -95,7 +96,7 @@ def test_a_fault_takes_its_part_of_the_length_or_of_the_width_of_a_roller():
 
 def test_over_a_groove_across_its_whole_length_a_roller_sinks_onto_the_edges():
     groove = Fault("spall", length=1e-3, width=9e-3, depth=1e-4)
-    on = on_surface(STRAIGHT, surface_on(STRAIGHT, LOAD, RADIUS, faults=[groove]), LOAD)
+    on = on_surface(STRAIGHT, raceway_on(STRAIGHT, LOAD, RADIUS, faults=[groove]), LOAD)
     onto_edges = 1e-3**2 / (8.0 * STRAIGHT.radius)
     assert -on.over_faults.min() == pytest.approx(STRAIGHT.approach(LOAD) + onto_edges, rel=0.05)
 
@@ -253,7 +254,7 @@ def test_what_lies_along_the_heaviest_roller_is_told_in_words_of_rollers(tree):
 def test_heights_count_by_the_stiffness_of_their_slices():
     """A rib at the end of a crowned roller, where nothing touches, moves nothing; one in the middle does."""
     crowned = SlicedContact(113e9, 3e-3, Crowning("circular", 8e-3, 40e-6))
-    surface = surface_on(crowned, LOAD, RADIUS)
+    surface = raceway_on(crowned, LOAD, RADIUS)
     on = on_surface(crowned, surface, LOAD)
     at_end, amid = np.zeros((2, *surface.heights.shape))
     at_end[:, 0] = amid[:, 20] = 1e-7

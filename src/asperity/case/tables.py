@@ -12,7 +12,7 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from asperity.arguments import Array, Flags, NDArray, listed
+from asperity.arguments import Array, Complex, Flags, listed
 from asperity.case.form import name_of
 from asperity.case.table_headings import (
     MOST_HEADING,
@@ -31,7 +31,7 @@ from asperity.parameters import FROM_PYTHON, File, Key, Origin, Problems, Quanti
 from asperity.spectra import energy_sum
 from asperity.structures import support, track_parameters
 from asperity.structures.outline import checked_outline
-from asperity.text_files import lines_in, lines_of_cells, number_in, read_text, refuse_decimal_commas
+from asperity.text_files import lines_in, lines_of_cells, number_or_nan, read_text, refuse_decimal_commas
 from asperity.units import unit_in_brackets
 from asperity.written_numbers import count_of, rounded
 
@@ -220,7 +220,7 @@ def read_ratios(table: TableSource) -> tuple[Array, Array]:
     return frequency, ratio
 
 
-def read_receptance(table: TableSource) -> tuple[Array, NDArray[np.complex128]]:
+def read_receptance(table: TableSource) -> tuple[Array, Complex]:
     """Read a receptance at its own place, (n,), m/N, e^{+iωt}, with its rising frequencies, Hz.
 
     A table of three columns: frequency, real and imaginary part; or, as the heading of a file says, magnitude
@@ -234,7 +234,7 @@ def read_receptance(table: TableSource) -> tuple[Array, NDArray[np.complex128]]:
     return frequency, first * np.exp(1j * second) if by_phase else first + 1j * second
 
 
-def read_seat_receptance(table: TableSource) -> tuple[Array, NDArray[np.complex128]]:
+def read_seat_receptance(table: TableSource) -> tuple[Array, Complex]:
     """Read the receptance of a sleeper at its rail seat, as `read_receptance`, that makes no energy."""
     frequency, receptance = read_receptance(table)
     with fitted_to(table):
@@ -349,7 +349,7 @@ def read_table(
             if repeated:
                 refuse_statistics(heading, table.name)
             width = len(cells)
-        values = [_number(cell) for cell in _of(cells, kept, width)]
+        values = [number_or_nan(cell) for cell in _of(cells, kept, width)]
         if len(cells) != width or not all(map(math.isfinite, values)):
             _refuse_line(table, content, cells, number, columns, allowed)
         found.extend(values)
@@ -370,13 +370,6 @@ def _refuse_line(
     """Refuse a line that does not fit, or the table whose lines do not because it lies on its side."""
     refuse_wide(content, columns, table.name)
     raise InputError(name_of(table), f"'{', '.join(cells)[:40]}' in line {number}", allowed)
-
-
-def _number(cell: str) -> float:
-    try:
-        return number_in(cell)
-    except ValueError:
-        return math.nan
 
 
 def _comment_above(content: str, number: int) -> list[str]:

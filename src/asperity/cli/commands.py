@@ -15,7 +15,7 @@ from typing import Any
 
 import click
 
-from asperity import __version__, errors
+from asperity import __version__, errors, files
 from asperity.case import kinds
 from asperity.errors import InputError, printable
 from asperity.interrupts import interruptible, was_interrupted
@@ -261,6 +261,11 @@ what_helps = click.option(
 def overwrite(what: str) -> Any:
     """Whether what a folder holds already may be replaced."""
     return click.option("--overwrite", is_flag=True, help=f"Replace {what} in the folder.")
+
+
+def require_writable(folder: Path, of: str = "results") -> None:
+    """Refuse a folder of what a command writes that cannot be written to."""
+    files.refuse_unwritable(folder, f"folder of the {of}", "Choose another folder with -o.")
 
 
 def taken_folder(directory: Path, received: str, what: str) -> InputError:

@@ -13,7 +13,7 @@ from asperity.case.any_case import AnyCase, entries, in_toml
 from asperity.case.cases import read_case
 from asperity.case.form import content, file_digest
 from asperity.case.toml import toml_text
-from asperity.cli.commands import mark_of, refuse_other_case, taken_folder
+from asperity.cli.commands import mark_of, refuse_other_case, require_writable, taken_folder
 from asperity.cli.running import doubted
 from asperity.errors import InputError
 from asperity.fitting.fitted import Fitted
@@ -65,7 +65,7 @@ def fit_case(
     _refuse_keys(case, measured)
     data_of_case = measured_for(case, list(measured) or None, read_where(where), what)
     chosen = chosen_free(case, data_of_case, list(free) or None)
-    files.refuse_unwritable(folder, "folder of the results", "Choose another folder with -o.")
+    require_writable(folder)
     asked = json.dumps(
         [
             content(case, file_digest),

@@ -10,7 +10,7 @@ from asperity import files
 from asperity.case import any_case, toml
 from asperity.case.any_case import function_named
 from asperity.case.form import content, file_digest
-from asperity.cli.commands import mark_of, refuse_other_case
+from asperity.cli.commands import mark_of, refuse_other_case, require_writable
 from asperity.cli.running import warn, warnings_of
 from asperity.optimising.definition import load_aim
 from asperity.optimising.kinds import optimisation_of, searched
@@ -57,7 +57,7 @@ def run_optimisation(
     """
     case, aim = load_aim(path)
     written = {what: directory / name for what, name in FILES.items()}
-    files.refuse_unwritable(directory, "folder of the results", "Choose another folder with -o.")
+    require_writable(directory)
     asked = json.dumps([content(each, file_digest) for each in (case, aim)])
     if not overwrite:
         refuse_other_case("texture", asked, written["case"], "optimisation")

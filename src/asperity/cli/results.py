@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from asperity.files import amount, discard, left_overs, refuse_unwritable, together
+from asperity.cli.commands import require_writable
+from asperity.files import amount, discard, left_overs, together
 from asperity.reporting import data, signal_files, sound
 from asperity.reporting.comparison_page import summary
 from asperity.reporting.figure import chosen_figures, write_figures
@@ -36,7 +37,7 @@ def _folder_beside(run: Path, folder: Path | None, name: str = "") -> Path:
 def report_again(run: Path, folder: Path | None, *, summary: bool) -> None:
     """Write the page of a run, or its summary alone; by default beside it."""
     target = _folder_beside(run, folder)
-    refuse_unwritable(target, "folder of the report", "Choose another folder with -o.")
+    require_writable(target, "report")
     tree = read_result(run)
     what, write = ("summary", write_summary) if summary else ("report", write_page)
     with together(target, last=(name := f"{what}.html")) as new:
@@ -47,7 +48,7 @@ def report_again(run: Path, folder: Path | None, *, summary: bool) -> None:
 def draw_figures(run: Path, folder: Path | None, format: str, names: Sequence[str]) -> None:
     """Draw figures of a run, by default into ``figures`` beside it, all or none."""
     target = _folder_beside(run, folder, "figures")
-    refuse_unwritable(target, "folder of the figures", "Choose another folder with -o.")
+    require_writable(target, "figures")
     tree = read_result(run)
     drawn = chosen_figures(figures_of(tree), names)
     with together(target, last="") as new:
@@ -80,7 +81,7 @@ def write_measured(run: Path, folder: Path | None, what: str | None, format: str
 def compare_runs(paths: Sequence[Path], target: Path) -> None:
     """Compare runs into a page and a table, and say in short what differs."""
     folder = target.parent if target.suffix.lower() == ".html" else target
-    refuse_unwritable(folder, "folder of the comparison", "Choose another folder with -o.")
+    require_writable(folder, "comparison")
     found = comparison_of(paths)
     table, names = found.table, found.names
     keys = [[i["key"], *("–" if v is None else str(v) for v in i["values"])] for i in found.keys]

@@ -17,7 +17,7 @@ from asperity import files
 from asperity.arguments import no_file
 from asperity.case.any_case import AnyCase, ReadyCase, function_named
 from asperity.case.form import case_key, file_digest
-from asperity.cli.commands import taken_folder
+from asperity.cli.commands import require_writable, taken_folder
 from asperity.errors import Grade, InputError, PhysicsWarning
 from asperity.progress import COMPILATION, duration, progress_bar
 from asperity.schema import bearing, provenance, rolling
@@ -305,7 +305,7 @@ def program() -> str:
 
 def refuse_full(case: AnyCase, directory: Path) -> None:
     """Refuse a folder that cannot be written to, or whose disk is too full for the results of a case."""
-    files.refuse_unwritable(directory, "folder of the results", "Choose another folder with -o.")
+    require_writable(directory)
     files.require_space(directory, 8.0 * case.numbers_written)  # as netCDF, and again as text
 
 

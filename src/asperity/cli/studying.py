@@ -12,7 +12,7 @@ import xarray
 
 from asperity import files
 from asperity.arguments import require, shown
-from asperity.cli.commands import taken_folder
+from asperity.cli.commands import require_writable, taken_folder
 from asperity.errors import CaseError, InputError
 from asperity.laws import spec_of
 from asperity.progress import progress_bar
@@ -78,7 +78,7 @@ def run_study(
     heard = _signals(**signals)
     if scheduler is not None and workers is not None:
         raise InputError("--workers", "a number beside --scheduler", "one of them")
-    files.refuse_unwritable(directory, "folder of the results", "Choose another folder with -o.")
+    require_writable(directory)
     with files.alone_in(directory):
         if not overwrite:
             _refuse_other(study, directory)

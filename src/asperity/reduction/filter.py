@@ -9,7 +9,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from scipy.linalg import cho_factor, cho_solve
 
-from asperity.arguments import Array, ArrayLike, Flags, Indices, NDArray, as_row, require
+from asperity.arguments import Array, ArrayLike, Complex, Flags, Indices, as_row, require
 from asperity.kernels.curves import shape_preserving
 from asperity.reduction.texture import PIECE, LongConvolution, StateTexture
 from asperity.spectra import hann_window
@@ -43,7 +43,7 @@ class FilterSpectra:
     # (s, k), power of the line textures under the patch of each state, mean over the lines, m²
     lines: Array
     mean_line: Array  # (s, k), power of their mean, m²
-    cross: NDArray[np.complex128]  # (s, k), cross spectrum of the force with their mean, N m
+    cross: Complex  # (s, k), cross spectrum of the force with their mean, N m
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,7 +117,7 @@ def filter_spectra(
     return FilterSpectra(np.add.reduceat(wavenumber, first) / bins, bins, *sums)
 
 
-def _windowed(rows: Array) -> NDArray[np.complex128]:
+def _windowed(rows: Array) -> Complex:
     """Spectra of rows without their means, under a Hann window."""
     return np.fft.rfft((rows - rows.mean(axis=1, keepdims=True)) * hann_window(rows.shape[1]))
 

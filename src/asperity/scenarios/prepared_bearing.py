@@ -17,9 +17,10 @@ from asperity.scenarios import compiling, preparing, reducing, run_time
 from asperity.scenarios.doubts import doubt_bearing
 from asperity.scenarios.problems import refuse
 from asperity.scenarios.raceway_films import films_on
+from asperity.scenarios.raceway_grids import raceway_on
 from asperity.scenarios.raceway_laws import OnRaceway, doubt_faults
 from asperity.scenarios.raceway_limits import doubt_fault, doubt_rise, doubt_surface
-from asperity.scenarios.roller_raceways import on_surface, surface_on
+from asperity.scenarios.roller_raceways import on_surface
 from asperity.speeds import at_fastest, slowest
 from asperity.store import Store
 from asperity.structures.bearing_statics import doubt_speed
@@ -103,7 +104,7 @@ def prepare_bearing(case: BearingUnderLoad, source: str = "case") -> PreparedBea
             faults = [each.fault for each in on_it if each.fault]
             seed = SEEDS * case.seed + number
             try:
-                made.append(surface_on(contact, load, radius, keys.texture(), faults, seed=seed))
+                made.append(raceway_on(contact, load, radius, keys.texture(), faults, seed=seed))
                 doubt_surface(made[-1], contact.approach(load), of.ELEMENT)
             except InputError as error:
                 errors.append(_by_key(case, name, keys, error))

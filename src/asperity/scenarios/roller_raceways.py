@@ -16,13 +16,10 @@ from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.texture import StateTexture
 from asperity.scenarios import raceway_grids, reducing
 from asperity.scenarios.geometry import HIGHEST_FORCE, Geometry
-from asperity.scenarios.raceway_grids import CELLS, CELLS_OF_FAULT, CELLS_OF_WAVE, FOLLOWED
+from asperity.scenarios.raceway_grids import AnyContact
 from asperity.scenarios.raceway_laws import OnRaceway
-from asperity.surfaces.faults import Fault
-from asperity.surfaces.raceway import AroundTexture, Raceway, raceway
+from asperity.surfaces.raceway import Raceway
 
-AnyContact = Hertz | SlicedContact
-"""Smooth contact of a ball, or of a roller, with its raceway."""
 STATES = 48
 """Approaches of the force curve of a roller: closest at first touch."""
 LEAST_STATE = 1e-3
@@ -31,39 +28,6 @@ STRAIGHT = 1e-5
 """Share of its largest height by which a texture between its states may lie beside itself."""
 STEPS = 30
 """Of Newton's method for the approach over a fault."""
-
-
-def surface_on(
-    contact: AnyContact,
-    load: float,
-    radius: float,
-    texture: AroundTexture | None = None,
-    faults: Sequence[Fault] = (),
-    *,
-    seed: int = 0,
-) -> Raceway:
-    """Make a raceway, or the surface of a ball or roller, on the grid that its contacts ask for.
-
-    Parameters and what is refused as of `asperity.scenarios.raceway_grids.raceway_on`; that of rollers is as
-    wide as they are long, in whole numbers of lines for each slice.
-    """
-    if isinstance(contact, Hertz):
-        return raceway_grids.raceway_on(contact, load, radius, texture, faults, seed=seed)
-    texture = texture or AroundTexture()
-    around = 2.0 * math.pi * positive("radius of the raceway (m)", radius)
-    half_width, _ = contact.semi_axes(contact.approach(positive("load of a roller (N)", load)))
-    wave = [texture.shortest / CELLS_OF_WAVE] if texture.is_rough else []
-    along, across = (
-        min([most, *wave, *(fault.details[axis] / CELLS_OF_FAULT for fault in faults)])
-        for axis, most in enumerate((half_width / CELLS[0], contact.length / contact.slices))
-    )
-    stride = max(1, math.floor(half_width / CELLS[0] / along + 1e-9))
-    rows = stride * fft.next_fast_len(math.ceil(around / along / stride), real=True)
-    lines = contact.slices * (
-        2 * math.ceil(0.5 * (contact.length / contact.slices / across - 1.0) - 1e-9) + 1
-    )
-    steps = around / rows, contact.length / lines
-    return raceway(texture, faults, (rows, lines), steps, seed=seed, followed=FOLLOWED * half_width)
 
 
 def on_surface(contact: AnyContact, surface: Raceway, load: float, **others: Any) -> OnRaceway:

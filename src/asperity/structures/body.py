@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, NDArray, as_row, finite_array, positive
+from asperity.arguments import Array, ArrayLike, Complex, as_row, finite_array, positive
 from asperity.errors import InputError
 from asperity.written_numbers import in_newtons
 
@@ -99,7 +99,7 @@ class Body:
             shapes=np.hstack([self.shapes, np.kron(np.eye(count), mass**-0.5)]),
         )
 
-    def receptance(self, frequency: ArrayLike) -> NDArray[np.complex128]:
+    def receptance(self, frequency: ArrayLike) -> Complex:
         """Displacements of the contacts per harmonic force at each, upwards (n, c, c), m/N, e^{+iωt}.
 
         Frequencies in Hz, above zero.
@@ -211,7 +211,7 @@ class Wheel:
         modes = self.natural_frequencies, self.damping_ratios, self.modal_masses
         return Body.rigid(self.mass, self.load).with_modes(*modes)
 
-    def receptance(self, frequency: ArrayLike) -> NDArray[np.complex128]:
+    def receptance(self, frequency: ArrayLike) -> Complex:
         """Displacement per harmonic force at the contact point.
 
         Parameters

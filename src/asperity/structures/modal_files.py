@@ -14,7 +14,7 @@ from asperity.hdf5 import check_unpacked, is_hdf5, opened_netcdf
 from asperity.sandbox import Answer, sandboxed
 from asperity.structures.modal import ModalStructure
 from asperity.surfaces.readers.guards import hostile
-from asperity.text_files import lines_of_cells, number_in, read_text, refuse_decimal_commas
+from asperity.text_files import lines_of_cells, number_or_nan, read_text, refuse_decimal_commas
 from asperity.units import factor, unit_in_brackets
 from asperity.written_numbers import count_of, rounded
 
@@ -315,7 +315,7 @@ def _table_of_modes(file: Path, place: str, dimension: str) -> dict[str, Array]:
     content = read_text(file, file.name, table_of, largest=LARGEST_FILE)
     refuse_decimal_commas(content, file.name)
     for number, cells in lines_of_cells(content):
-        values = [_cell(cell) for cell in cells]
+        values = [number_or_nan(cell) for cell in cells]
         words = next((i for i, value in enumerate(values) if not math.isnan(value)), len(cells))
         heading = " ".join(cells[:words])
         label = heading.lower()
@@ -356,13 +356,6 @@ def _stated(heading: str, name: str, dimension: str, file: Path) -> float:
         remedy = f"Write '{name} ({dimension})' with the unit that it is in."
         raise InputError(file.name, f"no unit of the {name}", "a unit in brackets", remedy)
     return factor(unit, dimension) if unit else 1.0
-
-
-def _cell(cell: str) -> float:
-    try:
-        return number_in(cell)
-    except ValueError:
-        return math.nan
 
 
 def modes_of_netcdf(path: str, places: str) -> Answer:

@@ -9,7 +9,7 @@ from typing import Literal, Self
 import numpy as np
 from scipy import fft
 
-from asperity.arguments import Array, ArrayLike, Flags, NDArray, finite_array, require, two_lengths
+from asperity.arguments import Array, ArrayLike, Complex, Flags, finite_array, require, two_lengths
 from asperity.parameters import File, ListOf, Number, Quantity, checked_parameters, parameter
 from asperity.surfaces.edges import Edges
 from asperity.surfaces.faults import LENGTH, MAP, Fault, lay, map_of
@@ -112,7 +112,7 @@ class AroundTexture:
         )
         return " and ".join(filter(None, (waves, rough)))
 
-    def line(self, rows: int, seed: int) -> NDArray[np.complex128]:
+    def line(self, rows: int, seed: int) -> Complex:
         """Complex amplitudes (rows // 2 + 1,), m, of waves per turn: a line is their real part, summed."""
         found = np.zeros(rows // 2 + 1, dtype=complex)
         last = rows // 2 - 1

@@ -33,7 +33,7 @@ from numpy.polynomial import chebyshev
 from scipy import fft
 from scipy.special import i0e
 
-from asperity.arguments import Array, NDArray
+from asperity.arguments import Array, Complex
 
 RANGE = 10.0**0.6
 """Ratio of the longest wave of a range to its shortest: six one-third octaves."""
@@ -52,7 +52,7 @@ DEGREE = 13
 TOGETHER = 2**9
 """Places for which the kernel is found at a time."""
 
-Waves = NDArray[np.complex128]
+Waves = Complex
 
 
 def range_of(wavenumber: float) -> int:

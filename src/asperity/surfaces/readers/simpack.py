@@ -10,7 +10,7 @@ from asperity.arguments import Array, require
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.readers import guards, positions
 from asperity.surfaces.readers.hints import Hints
-from asperity.text_files import lines_in, number_in, read_text
+from asperity.text_files import lines_in, number_or_nan, read_text
 from asperity.written_numbers import count_of
 
 LARGEST = 1 << 24
@@ -50,25 +50,18 @@ def read(path: Path, hints: Hints) -> list[guards.Surface]:
         if inside and words and words not in POINTS:
             points.append(_point(words.split(), path.name))
         elif match := _KEY.match(words):
-            stated.setdefault(match[1], _number(match[2]))
+            stated.setdefault(match[1], number_or_nan(match[2]))
     require(len(points) > 1, path.name, count_of(len(points), "point"), "two or more", guards.EXPORT)
     return [_section(np.array(points), stated, path.name)]
 
 
 def _point(words: Sequence[str], source: str) -> Array:
     """Place and height of a point, whose weight may follow."""
-    point = np.array([_number(word) for word in words])
+    point = np.array([number_or_nan(word) for word in words])
     right = len(point) in (2, 3) and bool(np.isfinite(point).all())
     received = repr(" ".join(words)[:60])
     require(right, f"points of {source}", received, "y, z, and perhaps a weight", guards.EXPORT)
     return point[:2]
-
-
-def _number(word: str) -> float:
-    try:
-        return number_in(word)
-    except ValueError:
-        return float("nan")
 
 
 def _section(points: Array, stated: Mapping[str, float], source: str) -> Profile:

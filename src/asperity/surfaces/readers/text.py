@@ -35,6 +35,7 @@ from asperity.text_files import (
     in_thousands,
     lines_in,
     number_in,
+    number_or_nan,
     read_text,
     refuse_decimal_commas,
 )
@@ -373,7 +374,7 @@ def _with_positions(
     table: Array, titles: list[Title], header: dict[str, float], hints: Hints, source: str
 ) -> list[guards.Surface]:
     """Heights whose first column holds even positions, and perhaps the first row others; none without."""
-    across = np.array([_number(title.name) for title in titles[1:]]) if titles else table[0, 1:]
+    across = np.array([number_or_nan(title.name) for title in titles[1:]]) if titles else table[0, 1:]
     framed = positions.are_even(across) and (bool(titles) or not table[0, 0] > 0.0)
     inner = table[1:] if framed and not titles else table
     if not positions.are_even(inner[:, 0]) or all(map(positions.are_even, inner[:, 1:].T)):
@@ -390,13 +391,6 @@ def _with_positions(
         turned, other = positions.line(across, heights.T, source)
         heights = turned.T
     return guards.surfaces_of(heights, (step * unit, other * unit), source)
-
-
-def _number(word: str) -> float:
-    try:
-        return number_in(word)
-    except ValueError:
-        return math.nan
 
 
 def _map_of_a_size(
