@@ -2,7 +2,7 @@
 
 import json
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from typing import Any, TypeVar
@@ -101,53 +101,36 @@ class Computed(ReducedCase, RecordedRuns):
         return None if self.bare_force is None else self.levels(self.psd(self.bare_force))
 
 
+class _Clock:
+    """Wall time of each part of the work, s: what has passed since the last part is that of this one."""
+
+    def __init__(self, seconds: Mapping[str, float]) -> None:
+        self.seconds = dict(seconds)
+        self.last = time.perf_counter()
+
+    def book(self, part: str) -> None:
+        """Book the time since the last part on this one."""
+        now = time.perf_counter()
+        self.seconds[part] = now - self.last
+        self.last = now
+
+
 def compute(prepared: PreparedCase, progress: Progress) -> Computed:
     """Run the textures of a case in, if it asks for it, reduce its samples, build its laws and roll each."""
     case = prepared.case
-    scene = prepared.scene
-    store = Store()
-    seconds = dict(prepared.seconds)
-    last = time.perf_counter()
-
-    def book(part: str) -> None:
-        """Book the time since the last part on this one."""
-        nonlocal last
-        now = time.perf_counter()
-        seconds[part] = now - last
-        last = now
-
+    clock = _Clock(prepared.seconds)
     compiling.compile_kernels(progress, *prepared.kinds_of_cells)  # not before files are known to be right
-    book("compiled functions")
-    over = _in_time(scene, case, store, progress)
-    book("what is rolled over")
-    which, others = other_contacts(case, scene.loads)
-    duration = recorded_time(case, prepared.textures)
+    clock.book("compiled functions")
+    over = _in_time(prepared.scene, case, Store(), progress)
+    clock.book("what is rolled over")
+    which, others = other_contacts(case, prepared.scene.loads)
     run_in, ran = _run_in(prepared, progress)
     if run_in is not prepared:
-        book("running in")
+        clock.book("running in")
     first = reduced_case(run_in, progress)
-    book("reduction")
+    clock.book("reduction")
     every: Sequence[ReducedCase] = [first, *(first.of_contact(*own) for own in others)]
-
-    def once(name: str, every: Sequence[ReducedCase], share: float = 1.0) -> RolledBodies:
-        laws = [materials.build(name) for materials in every]
-        run = roll_bodies(
-            over,
-            scene.rolling,
-            [laws[k] for k in which],
-            positions=scene.positions,
-            speed=case.speed,
-            start=case.record_start,
-            duration=share * duration,
-            settling=case.settled_time,
-            time_step=case.time_step,
-            sensors=case.rolled_over.sensor_positions,
-            highest_frequency=case.numerics.highest_frequency,
-            progress=progress,
-            checkpoint=checkpoint_of(name, case, lambda: _heights_of(prepared), store),
-        )
-        return run.steadied()
-
+    once = partial(_rolled, prepared, over, which, progress)
     visited = partial(_visited, len(every))
     runs: dict[str, RolledBodies] = {}
     for name in case.laws:
@@ -155,23 +138,52 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
             runs[name], every = within_scan(partial(once, name), every, visited)
         else:
             runs[name] = once(name, every)
-        book(f"law {name}")
-    bare = in_role(Role.BARE, names())
+        clock.book(f"law {name}")
     bare_force = None
+    bare = in_role(Role.BARE, names())
     steady = not isinstance(case.speed, SpeedCourse)  # CNOSSOS-EU knows no other speed
-    if bare is not None and steady and isinstance(scene.over, Track) and np.ptp(first.textures.line):
+    if bare is not None and steady and isinstance(prepared.scene.over, Track) and np.ptp(first.textures.line):
         bare_force = (runs[bare] if bare in runs else once(bare, every)).contact_force
-        book("what CNOSSOS-EU's sound power is of")
+        clock.book("what CNOSSOS-EU's sound power is of")
     scan = every[0].path_scan if Need.SCAN in needs_of(case.laws) else None
-    unused = replace(first, seconds=seconds, states=every[0].states)
+    unused = replace(first, seconds=clock.seconds, states=every[0].states)
     computed = Computed(
         **vars(unused), over=over, runs=runs, scan=scan, running_in=ran, bare_force=bare_force
     )
-    if not case.point_positions:
-        return computed
-    computed = replace(computed, points=_passed(computed, progress))
-    book("passed points")
+    if case.point_positions:
+        computed = replace(computed, points=_passed(computed, progress))
+        clock.book("passed points")
     return computed
+
+
+def _rolled(
+    prepared: PreparedCase,
+    over: Modal | RailBetween | None,
+    which: Sequence[int],
+    progress: Progress,
+    law: str,
+    every: Sequence[ReducedCase],
+    share: float = 1.0,
+) -> RolledBodies:
+    """Roll a share of the record by a law, built for each contact that differs; which is whose is told."""
+    case = prepared.case
+    laws = [materials.build(law) for materials in every]
+    run = roll_bodies(
+        over,
+        prepared.scene.rolling,
+        [laws[k] for k in which],
+        positions=prepared.scene.positions,
+        speed=case.speed,
+        start=case.record_start,
+        duration=share * recorded_time(case, prepared.textures),
+        settling=case.settled_time,
+        time_step=case.time_step,
+        sensors=case.rolled_over.sensor_positions,
+        highest_frequency=case.numerics.highest_frequency,
+        progress=progress,
+        checkpoint=checkpoint_of(law, case, lambda: _heights_of(prepared), Store()),
+    )
+    return run.steadied()
 
 
 def _run_in(prepared: PreparedCase, progress: Progress) -> tuple[PreparedCase, Values]:

@@ -38,8 +38,12 @@ BODY_DISPLACEMENT = _rolling(
 _BODIES = "PSD of the acceleration of the bodies in their degrees of freedom, one-sided"
 BODY_ACCELERATION_PSD = _spectra("body_acceleration_psd(law, degree, frequency)", "(m/s2)2/Hz", _BODIES)
 _AT_FASTEST = "; of a speed that changes at the fastest"
-_PASSING = f"frequency at which contacts at equal distances pass a place, and its multiples{_AT_FASTEST}"
-PASSING_FREQUENCY = _spectra("passing_frequency", "Hz", _PASSING, "contacts at equal distances")
+PASSING_FREQUENCY = _spectra(
+    "passing_frequency",
+    "Hz",
+    f"frequency at which contacts at equal distances pass a place, and its multiples{_AT_FASTEST}",
+    "contacts at equal distances",
+)
 
 _AROUND = "where a line around what rolls was measured, of a turn or more"
 _round = partial(_spectra, condition=_AROUND)
@@ -62,8 +66,9 @@ _SENSOR = "position of the accelerometer on what is rolled over"
 ROLLING_SENSOR, SPECTRA_SENSOR = (each("sensor", "m", _SENSOR, _SENSED) for each in (_rolling, _spectra))
 _DOWNWARDS = f"{_OVER}, positive downwards"
 ACCELERATION = _rolling("acceleration(law, sensor, time)", "m/s2", _DOWNWARDS, _SENSED)
-_PSD = f"PSD of the {_OVER}, one-sided"
-ACCELERATION_PSD = _spectra("acceleration_psd(law, sensor, frequency)", "(m/s2)2/Hz", _PSD, _SENSED)
+ACCELERATION_PSD = _spectra(
+    "acceleration_psd(law, sensor, frequency)", "(m/s2)2/Hz", f"PSD of the {_OVER}, one-sided", _SENSED
+)
 ACCELERATION_LEVEL = _spectra(
     "acceleration_level(law, sensor, band)", "dB re 1e-6 m/s2", "acceleration level", _SENSED, NO_SIGNAL
 )
@@ -77,15 +82,17 @@ _rail, _rail_spectra = partial(_rolling, condition=_TRACK), partial(_spectra, co
 _POINT = "point on the rail passed by"
 ROLLING_POINT, SPECTRA_POINT = (each("point", "m", _POINT) for each in (_rail, _rail_spectra))
 _OF_POINT = "of the rail at a point passed by"
-_MOVED = f"displacement {_OF_POINT}, positive downwards"
-POINT_DISPLACEMENT = _rail("point_displacement(law, point, time)", "m", _MOVED)
-_MOVED = f"velocity {_OF_POINT}, positive downwards"
-POINT_VELOCITY = _rail("point_velocity(law, point, time)", "m/s", _MOVED)
-_PSD = "PSD of the rail's velocity at a point passed by, one-sided"
-POINT_VELOCITY_PSD = _rail_spectra("point_velocity_psd(law, point, frequency)", "(m/s)2/Hz", _PSD)
-_LEVEL = f"velocity level {_OF_POINT}"
+POINT_DISPLACEMENT = _rail(
+    "point_displacement(law, point, time)", "m", f"displacement {_OF_POINT}, positive downwards"
+)
+POINT_VELOCITY = _rail("point_velocity(law, point, time)", "m/s", f"velocity {_OF_POINT}, positive downwards")
+POINT_VELOCITY_PSD = _rail_spectra(
+    "point_velocity_psd(law, point, frequency)",
+    "(m/s)2/Hz",
+    "PSD of the rail's velocity at a point passed by, one-sided",
+)
 POINT_VELOCITY_LEVEL = _rail_spectra(
-    "point_velocity_level(law, point, band)", "dB re 1 nm/s", _LEVEL, missing=NO_SIGNAL
+    "point_velocity_level(law, point, band)", "dB re 1 nm/s", f"velocity level {_OF_POINT}", missing=NO_SIGNAL
 )
 
 # --- the track by itself
@@ -109,8 +116,11 @@ _LIMIT, _NONE = "lower limit, ISO 3095:2013", "the standard sets no limit at the
 DECAY_RATE_LIMIT = _track("decay_rate_limit(frequency)", "dB/m", _LIMIT, missing=_NONE)
 
 TRACK_BAND = _losses("band", "Hz", _BAND)
-_FORCE = "level of the linear contact force in time over that of constant loss factors"
-LOSS_FACTOR_FORCE_ERROR = _losses("loss_factor_force_error(band)", "dB", _FORCE)
+LOSS_FACTOR_FORCE_ERROR = _losses(
+    "loss_factor_force_error(band)",
+    "dB",
+    "level of the linear contact force in time over that of constant loss factors",
+)
 
 _bays = partial(Entry, "track", condition="where bays differ")
 BAY = _bays("bay", "1", "bay of the cell, the first behind the sleeper at zero")
@@ -124,29 +134,37 @@ RECEPTANCE_EQUAL_BAYS = _bays("receptance_equal_bays(frequency)", "m/N", _EQUAL)
 
 NAME = _fact("name", "text", "of the set of parameters")
 SLEEPER_SPACING = _fact("sleeper_spacing", "m", "distance of the sleepers, mean")
-_PINNED = "at which half a bending wave fits between two sleepers"
 _apart = partial(Attribute, "track", condition=f"{_TRACK}, on single supports")
-PINNED_PINNED_FREQUENCY = _apart("pinned_pinned_frequency", "Hz", _PINNED)
+PINNED_PINNED_FREQUENCY = _apart(
+    "pinned_pinned_frequency", "Hz", "at which half a bending wave fits between two sleepers"
+)
 CUT_ON_FREQUENCY = _fact("cut_on_frequency", "Hz", "above which waves run along the rail on its pads")
 _HELD = "at which the sleepers hold the rail still"
 ANTIRESONANCE_FREQUENCY = Attribute(
     "track", "antiresonance_frequency", "Hz", _HELD, f"{_TRACK}, with sleepers that move"
 )
 CRITICAL_SPEED = _fact("critical_speed", "m/s", "of the rail with its sleepers on a continuous foundation")
-_STATIC = "of the rail at mid-span under the wheel's load, nominal stiffnesses"
-STATIC_DEFLECTION = _fact("static_deflection", "m", _STATIC)
-_STATIC = "the same, with what stands for the loss factors in time"
-STATIC_DEFLECTION_IN_TIME = _fact("static_deflection_in_time", "m", _STATIC)
+STATIC_DEFLECTION = _fact(
+    "static_deflection", "m", "of the rail at mid-span under the wheel's load, nominal stiffnesses"
+)
+STATIC_DEFLECTION_IN_TIME = _fact(
+    "static_deflection_in_time", "m", "the same, with what stands for the loss factors in time"
+)
 
 # --- texture, linear reference and noise over a track
 
 _PASSED = "PSD of the texture passed by, one-sided"
 TEXTURE_PSD = _rail_spectra("texture_psd(frequency)", "m2/Hz", _PASSED)
-_LINEAR = "PSD of the contact force, linear, by frequency, with constant loss factors"
-LINEAR_REFERENCE_PSD = _rail_spectra("linear_reference_psd(frequency)", "N2/Hz", _LINEAR)
-_LINEAR = "contact force level, linear, in the frequency domain"
+LINEAR_REFERENCE_PSD = _rail_spectra(
+    "linear_reference_psd(frequency)",
+    "N2/Hz",
+    "PSD of the contact force, linear, by frequency, with constant loss factors",
+)
 LINEAR_REFERENCE_LEVEL = _rail_spectra(
-    "linear_reference_level(band)", "dB re 1 N", _LINEAR, missing=NO_SIGNAL
+    "linear_reference_level(band)",
+    "dB re 1 N",
+    "contact force level, linear, in the frequency domain",
+    missing=NO_SIGNAL,
 )
 PART = _rail_spectra("part", "1", "what bears the texture")
 SURFACE_BAND = _rail_spectra("surface_band", "m", "wavelength of the one-third octave")
@@ -197,12 +215,21 @@ SILENT = "of this wheel it is not known how its disc and tread vibrate"
 STILL = "no sleeper moves on this track"
 RADIATOR = _rail_spectra("radiator", "1", "what radiates by its vibration")
 _radiated = partial(_rail_spectra, missing=SILENT, attributes=("wheel",))
-_POWER = "sound power level from the vibration itself, of all axles"
-RADIATED_POWER_LEVEL = _radiated("radiated_power_level(law, radiator, band)", "dB re 1 pW", _POWER)
-_POWER = "A-weighted sound power level from the vibration itself, over the bands computed"
-RADIATED_POWER_LEVEL_A = _radiated("radiated_power_level_a(law, radiator)", "dB(A) re 1 pW", _POWER)
-_POWER = "standard deviation of the A-weighted sound power level by the chance of one record"
-RADIATED_POWER_DEVIATION = _radiated("radiated_power_deviation(law, radiator)", "dB", _POWER)
+RADIATED_POWER_LEVEL = _radiated(
+    "radiated_power_level(law, radiator, band)",
+    "dB re 1 pW",
+    "sound power level from the vibration itself, of all axles",
+)
+RADIATED_POWER_LEVEL_A = _radiated(
+    "radiated_power_level_a(law, radiator)",
+    "dB(A) re 1 pW",
+    "A-weighted sound power level from the vibration itself, over the bands computed",
+)
+RADIATED_POWER_DEVIATION = _radiated(
+    "radiated_power_deviation(law, radiator)",
+    "dB",
+    "standard deviation of the A-weighted sound power level by the chance of one record",
+)
 
 SIDE = "where the contact of a wheel and a rail is off the middle, or the wheel is drawn"
 RAIL_SIDEWAYS = "rail sideways"
@@ -218,8 +245,9 @@ SINGLE_FORCE_POWER_LEVEL_A = _alone(
     "dB(A) re 1 pW",
     f"A-weighted {_POWER}, over the bands computed",
 )
-_DECAY = "decay rate of the rail, of the mean length in the band"
-BAND_DECAY_RATE = _rail_spectra("band_decay_rate(band)", "dB/m", _DECAY)
+BAND_DECAY_RATE = _rail_spectra(
+    "band_decay_rate(band)", "dB/m", "decay rate of the rail, of the mean length in the band"
+)
 
 _RINGING = "where it is known how a wheel's disc and tread vibrate"
 _mode = partial(_spectra, condition=_RINGING)
@@ -231,9 +259,11 @@ WHEEL_MODE_DAMPING = _mode("wheel_mode_damping(wheel_mode)", "1", "damping ratio
 WHEEL_MODE_DIAMETERS = _mode(
     "wheel_mode_diameters(wheel_mode)", "1", "nodal diameters of a mode of the wheel"
 )
-_POWER = "A-weighted sound power level of a mode of the wheels of all axles, over the bands computed"
 WHEEL_MODE_POWER_LEVEL_A = _mode(
-    "wheel_mode_power_level_a(law, wheel_mode)", "dB(A) re 1 pW", _POWER, missing=NO_SIGNAL
+    "wheel_mode_power_level_a(law, wheel_mode)",
+    "dB(A) re 1 pW",
+    "A-weighted sound power level of a mode of the wheels of all axles, over the bands computed",
+    missing=NO_SIGNAL,
 )
 
 _MEASURED = "where something was measured on the track"
@@ -248,32 +278,50 @@ _EXPECTED = "decay rate that EN 15461 finds on the computed track"
 EXPECTED_LATERAL_DECAY_RATE = _beside(
     "expected_lateral_decay_rate(band)", "dB/m", f"lateral {_EXPECTED}", condition=_SIDEWAYS
 )
-_CHANGE = "sound power level of the rail sideways with what was measured over that of the computed track"
 MEASURED_LATERAL_POWER_CHANGE = _beside(
-    "measured_lateral_power_change(band)", "dB", _CHANGE, condition=_SIDEWAYS
+    "measured_lateral_power_change(band)",
+    "dB",
+    "sound power level of the rail sideways with what was measured over that of the computed track",
+    condition=_SIDEWAYS,
 )
 EXPECTED_DECAY_RATE = _beside("expected_decay_rate(band)", "dB/m", _EXPECTED)
 _MOBILITY = "point mobility of the rail at mid-span, rms in the band"
 MEASURED_MOBILITY = _beside("measured_mobility(band)", "(m/s)/N", f"{_MOBILITY}, measured")
 EXPECTED_MOBILITY = _beside("expected_mobility(band)", "(m/s)/N", f"{_MOBILITY}, of the computed track")
-_CHANGE = "level of a linear contact force on what was measured over that on the computed track"
-MEASURED_FORCE_CHANGE = _beside("measured_force_change(band)", "dB", _CHANGE)
-_CHANGE = "sound power level of rail and sleepers with what was measured over that of the computed track"
-MEASURED_POWER_CHANGE = _beside("measured_power_change(band)", "dB", _CHANGE)
+MEASURED_FORCE_CHANGE = _beside(
+    "measured_force_change(band)",
+    "dB",
+    "level of a linear contact force on what was measured over that on the computed track",
+)
+MEASURED_POWER_CHANGE = _beside(
+    "measured_power_change(band)",
+    "dB",
+    "sound power level of rail and sleepers with what was measured over that of the computed track",
+)
 _unmeasured = partial(_radiated, condition=_MEASURED)
-_POWER = "sound power level from vibration of the computed track, of all axles"
-UNMEASURED_POWER_LEVEL = _unmeasured("unmeasured_power_level(law, radiator, band)", "dB re 1 pW", _POWER)
-_POWER = "A-weighted sound power level from vibration of the computed track, over the bands computed"
-UNMEASURED_POWER_LEVEL_A = _unmeasured("unmeasured_power_level_a(law, radiator)", "dB(A) re 1 pW", _POWER)
+UNMEASURED_POWER_LEVEL = _unmeasured(
+    "unmeasured_power_level(law, radiator, band)",
+    "dB re 1 pW",
+    "sound power level from vibration of the computed track, of all axles",
+)
+UNMEASURED_POWER_LEVEL_A = _unmeasured(
+    "unmeasured_power_level_a(law, radiator)",
+    "dB(A) re 1 pW",
+    "A-weighted sound power level from vibration of the computed track, over the bands computed",
+)
 
 _tone = partial(Attribute, "spectra", condition=_TRACK)
-_PASSING = f"speed over the distance of the sleepers{_AT_FASTEST}"
 SLEEPER_PASSING_FREQUENCY = Attribute(
-    "spectra", "sleeper_passing_frequency", "Hz", _PASSING, f"{_TRACK}, on single supports"
+    "spectra",
+    "sleeper_passing_frequency",
+    "Hz",
+    f"speed over the distance of the sleepers{_AT_FASTEST}",
+    f"{_TRACK}, on single supports",
 )
-_PINNED = "pinned–pinned frequency as a moving wheel meets it, the lower"
 _split = partial(Attribute, "spectra", condition=f"{_TRACK}, on single supports")
-PINNED_PINNED_LOW = _split("pinned_pinned_low", "Hz", _PINNED)
+PINNED_PINNED_LOW = _split(
+    "pinned_pinned_low", "Hz", "pinned–pinned frequency as a moving wheel meets it, the lower"
+)
 PINNED_PINNED_HIGH = _split("pinned_pinned_high", "Hz", "the higher")
 WHEEL_REVOLUTION_FREQUENCY = _tone("wheel_revolution_frequency", "Hz", "turns of the wheel per second")
 
@@ -290,20 +338,33 @@ PASS_BY_BAND = _pass_by("band", "Hz", _BAND)
 PASS_BY_TIME = _pass_by("time", "s", "time since the first axle was opposite the receiver")
 AXLE = _pass_by("axle", "1", "number of the axle")
 AXLE_TIME = _pass_by("axle_time(axle)", "s", "time at which it is opposite the receiver")
-_LEVEL = "A-weighted sound pressure level beside the track, with time weighting F"
-PASS_BY_LEVEL = _heard("pass_by_level(law, radiator, time)", "dB(A) re 20 uPa", _LEVEL)
-_LEVEL = "L_pAFmax, largest A-weighted sound pressure level with time weighting F"
-PASS_BY_MAXIMUM_LEVEL = _heard("pass_by_maximum_level(law, radiator)", "dB(A) re 20 uPa", _LEVEL)
-_LEVEL = "L_pAeq,Tp, A-weighted equivalent sound pressure level over the pass-by time"
+PASS_BY_LEVEL = _heard(
+    "pass_by_level(law, radiator, time)",
+    "dB(A) re 20 uPa",
+    "A-weighted sound pressure level beside the track, with time weighting F",
+)
+PASS_BY_MAXIMUM_LEVEL = _heard(
+    "pass_by_maximum_level(law, radiator)",
+    "dB(A) re 20 uPa",
+    "L_pAFmax, largest A-weighted sound pressure level with time weighting F",
+)
 PASS_BY_EQUIVALENT_LEVEL = _heard(
-    "pass_by_equivalent_level(law, radiator)", "dB(A) re 20 uPa", _LEVEL, condition=_LENGTH
+    "pass_by_equivalent_level(law, radiator)",
+    "dB(A) re 20 uPa",
+    "L_pAeq,Tp, A-weighted equivalent sound pressure level over the pass-by time",
+    condition=_LENGTH,
 )
-_LEVEL = "TEL, A-weighted transit exposure level: all between the points 10 dB down, over the pass-by time"
 TRANSIT_EXPOSURE_LEVEL = _heard(
-    "transit_exposure_level(law, radiator)", "dB(A) re 20 uPa", _LEVEL, condition=_LENGTH
+    "transit_exposure_level(law, radiator)",
+    "dB(A) re 20 uPa",
+    "TEL, A-weighted transit exposure level: all between the points 10 dB down, over the pass-by time",
+    condition=_LENGTH,
 )
-_LEVEL = "SEL, A-weighted sound exposure level of the whole passage"
-SOUND_EXPOSURE_LEVEL_A = _heard("sound_exposure_level_a(law, radiator)", "dB(A) re 20 uPa and 1 s", _LEVEL)
+SOUND_EXPOSURE_LEVEL_A = _heard(
+    "sound_exposure_level_a(law, radiator)",
+    "dB(A) re 20 uPa and 1 s",
+    "SEL, A-weighted sound exposure level of the whole passage",
+)
 SOUND_EXPOSURE_LEVEL = _pass_by(
     "sound_exposure_level(law, radiator, band)",
     "dB re 20 uPa and 1 s",
@@ -381,8 +442,9 @@ RAIL_CROSS_RECEPTANCE = _side("rail_cross_receptance(frequency)", "m/N", f"{_RAI
 _WHEEL = "receptance of the wheel at the contact, along the axle per force"
 WHEEL_LATERAL_RECEPTANCE = _side("wheel_lateral_receptance(frequency)", "m/N", f"{_WHEEL} along it")
 WHEEL_CROSS_RECEPTANCE = _side("wheel_cross_receptance(frequency)", "m/N", f"{_WHEEL} downwards")
-_DECAY = "decay rate of the rail sideways, eigenvalue"
-LATERAL_DECAY_RATE = _side("lateral_decay_rate(frequency)", "dB/m", _DECAY)
+LATERAL_DECAY_RATE = _side(
+    "lateral_decay_rate(frequency)", "dB/m", "decay rate of the rail sideways, eigenvalue"
+)
 _FORCE = "lateral contact force in stick, mean of the contacts"
 LATERAL_FORCE_PSD = _spectra(
     "lateral_force_psd(law, frequency)", "N2/Hz", f"PSD of the {_FORCE}, one-sided", SIDE
@@ -390,8 +452,11 @@ LATERAL_FORCE_PSD = _spectra(
 LATERAL_FORCE_LEVEL = _side(
     "lateral_force_level(law, band)", "dB re 1 N", f"level of the {_FORCE}", missing=NO_SIGNAL
 )
-_CHANGE = "level of the linear vertical force with the lateral one over that without, which runs leave out"
-VERTICAL_FORCE_CHANGE = _side("vertical_force_change(band)", "dB", _CHANGE)
+VERTICAL_FORCE_CHANGE = _side(
+    "vertical_force_change(band)",
+    "dB",
+    "level of the linear vertical force with the lateral one over that without, which runs leave out",
+)
 _SLIP = (
     "share of the time in which the lateral force would be beyond friction, of a normal distribution, mean "
     "of the contacts"

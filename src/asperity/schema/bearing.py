@@ -17,16 +17,26 @@ _fact = partial(Attribute, "bearing", condition=OF_BEARING)
 # --- how it carries its load
 
 _BALL, _RING = "number of the ball or roller", "ring: inner or outer"
-_DIRECTION = "direction: along the radial load, across it in the sense of rotation, along the axis"
 _STILL = "nothing vibrates"
-_LOOSE = "balls that do not touch have no contact angle"
 BALL, ROLLING_BALL = (each("ball", "1", _BALL) for each in (_bearing, _rolling))
 RING, ROLLING_RING = (each("ring", "1", _RING) for each in (_bearing, _rolling))
-DIRECTION, ROLLING_DIRECTION = (each("direction", "1", _DIRECTION) for each in (_bearing, _rolling))
+DIRECTION, ROLLING_DIRECTION = (
+    each(
+        "direction",
+        "1",
+        "direction: along the radial load, across it in the sense of rotation, along the axis",
+    )
+    for each in (_bearing, _rolling)
+)
 CAGE_ANGLE = _bearing("cage_angle", "rad", "angle of the first ball from the radial load, at rest")
 AZIMUTH = _bearing("azimuth(cage_angle, ball)", "rad", "angle of a ball from the radial load")
 BALL_LOAD = _bearing("ball_load(ring, cage_angle, ball)", "N", "static load of a contact")
-BALL_ANGLE = _bearing("ball_angle(ring, cage_angle, ball)", "rad", "contact angle", missing=_LOOSE)
+BALL_ANGLE = _bearing(
+    "ball_angle(ring, cage_angle, ball)",
+    "rad",
+    "contact angle",
+    missing="balls that do not touch have no contact angle",
+)
 PEAK_PRESSURE = _bearing("peak_pressure(ring, cage_angle, ball)", "Pa", "largest pressure of a contact")
 SEMI_AXIS_ALONG, SEMI_AXIS_ACROSS = (
     _bearing(f"semi_axis_{way}(ring, cage_angle, ball)", "m", f"semi-axis of a contact {way} its raceway")
@@ -146,8 +156,7 @@ ALONG_ROLLER, LINE_LOAD, LINE_PRESSURE = (
 
 # --- what turns how fast
 
-_PART = "part of the bearing: outer or inner raceway, or ball"
-PART = _bearing("part", "1", _PART)
+PART = _bearing("part", "1", "part of the bearing: outer or inner raceway, or ball")
 TONE = _bearing("tone(part)", "Hz", "frequency at which a place of a part is met, in pure rolling")
 MODULATION = _bearing("modulation(part)", "Hz", "turns of that place past the radial load")
 TURNING = _fact("turning_frequency", "Hz", "turns of the ring that turns")
@@ -175,9 +184,11 @@ RING_FORCES = {"inner": INNER_FORCE, "outer": OUTER_FORCE}
 """Parts of the forces of all contacts, by the ring."""
 TACHO = _rolling("tacho_speed(time)", "Hz", "turns per second of the ring that turns")
 SPECTRA_SENSOR = _spectra("ring_sensor", "rad", _SENSOR)
-_LEVEL = "level of the acceleration of the outer ring, radially"
 ACCELERATION_LEVEL = _spectra(
-    "ring_acceleration_level(law, ring_sensor, band)", "dB re 1e-6 m/s2", _LEVEL, missing=_STILL
+    "ring_acceleration_level(law, ring_sensor, band)",
+    "dB re 1e-6 m/s2",
+    "level of the acceleration of the outer ring, radially",
+    missing=_STILL,
 )
 BALL_MOTION = _rolling("ball_motion(law, ball, time)", "m", "motion of a ball along its contacts, outwards")
 FLANK_FORCE = Entry(

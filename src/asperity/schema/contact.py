@@ -41,15 +41,16 @@ HOMOGENEITY_P = _measured(
 TILE_VARIATION = _measured(
     "tile_variation(sample)", "1", "coefficient of variation of the tiles' mean squares"
 )
-_STATIONARY = "the same of stationary textures, median"
-TILE_VARIATION_EXPECTED = _measured("tile_variation_expected(sample)", "1", _STATIONARY)
+TILE_VARIATION_EXPECTED = _measured(
+    "tile_variation_expected(sample)", "1", "the same of stationary textures, median"
+)
 
-_STATISTICS = "statistics of the texture: symbol, value, unit, bandwidth, …"
-STATISTICS = _of_surface("statistics", "JSON", _STATISTICS)
+STATISTICS = _of_surface("statistics", "JSON", "statistics of the texture: symbol, value, unit, bandwidth, …")
 SOURCE = _of_surface("source", "text", "where the texture comes from")
 MISSING_SHARE = _of_surface("missing_share", "1", "share of the measured points that had no height")
-_ACROSS = "areal: texture of its own beside the line; lines: laid out between them"
-ACROSS = _of_surface("across", "text", _ACROSS)
+ACROSS = _of_surface(
+    "across", "text", "areal: texture of its own beside the line; lines: laid out between them"
+)
 
 # --- the reduced contact
 
@@ -57,8 +58,11 @@ _NO_FILTER = "the samples do not touch in these states, or have no waves of thes
 _entry, _attribute = partial(Entry, "contact"), partial(Attribute, "contact")
 _sampled = partial(_entry, condition=SAMPLED)
 
-_STATE = "approach from the plane that the nominal patch feels: heights under its flat-punch weight"
-APPROACH = _entry("approach", "m", _STATE)
+APPROACH = _entry(
+    "approach",
+    "m",
+    "approach from the plane that the nominal patch feels: heights under its flat-punch weight",
+)
 FORCE = _entry("force(approach)", "N", "contact force, mean of the samples")
 FORCE_STD = _sampled("force_std(approach)", "N", "standard deviation of the force between samples")
 STIFFNESS = _entry("stiffness(approach)", "N/m", "contact stiffness F/r, mean of the samples")
@@ -74,8 +78,9 @@ GAP = _sampled("gap(px, py)", "m", "gap after deformation at the working load")
 
 WAVENUMBER = _entry("wavenumber", "1/m", "wavenumber, cycles per metre")
 FILTER_EXCITED = _sampled("filter_excited(wavenumber)", "1", "1 where the texture excites the contact")
-_SCALE = "k_0/k_t: low-wavenumber over tangent stiffness"
-FILTER_SCALE = _sampled("filter_scale(approach)", "1", _SCALE, missing=_NO_FILTER)
+FILTER_SCALE = _sampled(
+    "filter_scale(approach)", "1", "k_0/k_t: low-wavenumber over tangent stiffness", missing=_NO_FILTER
+)
 
 
 def _filter(name: str, what: str, condition: str = SAMPLED, attributes: tuple[str, ...] = ()) -> Entry:
@@ -96,8 +101,9 @@ def _magnitudes(name: str, *conditions: str) -> tuple[Entry, ...]:
 
 
 FILTER_SIGNED = _filter("filter_signed", "signed estimate")
-_COHERENCE = "share of the force's power that the mean line under the patch explains"
-FILTER_COHERENCE = _filter("filter_coherence", _COHERENCE)
+FILTER_COHERENCE = _filter(
+    "filter_coherence", "share of the force's power that the mean line under the patch explains"
+)
 FILTER_THEORY = _filter("filter_theory", "sin q/q of the nominal patch")
 FILTERS = _magnitudes("filter", "", SAMPLED, "", SAMPLED)
 FILTER, FILTER_RAW, FILTER_APPLIED, FILTER_STD = FILTERS
@@ -113,35 +119,56 @@ RUNNING_IN_PASS = _passed("running_in_pass", "1", "pass of running-in")
 RUNNING_IN_LOWERING = _passed(f"running_in_lowering{_PASS}", "m", "largest lowering of a place in the pass")
 CONDITION = _passed("condition", "1", "before or after running-in")
 TRACK_RMS = _passed(f"track_rms{_CONDITION}", "m", "rms height on the track, as wide as the nominal patch")
-_ELASTIC = "dF/dr under the load, elastic, mean of the samples"
-TRACK_STIFFNESS = _passed(f"track_stiffness{_CONDITION}", "N/m", _ELASTIC)
-_YIELDED = "share of the touched area that was lowered in running-in"
-YIELDED_SHARE = _attribute("yielded_share", "1", _YIELDED, RUN_IN)
-_SETTLED = "one where the last pass lowered no place beyond the tolerance, else zero"
-SHAKEN_DOWN = _attribute("shaken_down", "1", _SETTLED, RUN_IN)
+TRACK_STIFFNESS = _passed(
+    f"track_stiffness{_CONDITION}", "N/m", "dF/dr under the load, elastic, mean of the samples"
+)
+YIELDED_SHARE = _attribute(
+    "yielded_share", "1", "share of the touched area that was lowered in running-in", RUN_IN
+)
+SHAKEN_DOWN = _attribute(
+    "shaken_down", "1", "one where the last pass lowered no place beyond the tolerance, else zero", RUN_IN
+)
 
 HERTZ_RADIUS = _attribute("hertz_radius", "m", "semi-axis of Hertz's contact in rolling direction")
 HERTZ_RADIUS_ACROSS = _attribute("hertz_radius_across", "m", "semi-axis of Hertz's contact across")
 HERTZ_CONSTANT = _attribute("hertz_constant", "N/m^1.5", "K of Hertz's F = K δ^1.5")
 WORKING_LOAD = _attribute("working_load", "N", "static load")
 WORKING_APPROACH = _attribute("working_approach", "m", "approach under the static load")
-_WORKING = "mean contact stiffness under the static load, dF/dr of the mean force"
-WORKING_STIFFNESS = _attribute("working_stiffness", "N/m", _WORKING)
+WORKING_STIFFNESS = _attribute(
+    "working_stiffness", "N/m", "mean contact stiffness under the static load, dF/dr of the mean force"
+)
 CONTACT_MODULUS = _attribute("contact_modulus", "Pa", "E*, of both bodies")
 DATUM = _attribute("datum", "m", "d₀: the state r is the approach plus this")
 DATUM_SAMPLES = _attribute("datum_samples", "m", "highest first touch of the samples", SAMPLED)
 DATUM_PATH = _attribute("datum_path", "m", "highest first touch of samples and path", SAMPLED)
-_REAL_AREA = "area in contact of the first sample at the load, less what whole cells stand out beyond rims"
-CONTACT_AREA = _attribute("contact_area", "m2", _REAL_AREA, SAMPLED)
-_AREA = "cells in contact over those of smooth bodies on the same grid, both counted"
-CONTACT_AREA_RATIO = _attribute("contact_area_ratio", "1", _AREA, SAMPLED)
-_ISOLATED = "share of the load on cells in contact without a neighbour"
-ISOLATED_SHARE = _attribute("isolated_share", "1", _ISOLATED, SAMPLED)
-_RIMS = "cells at the rim of a contact: whole, covered in part, or covered for some laws"
-RIM_CELLS = _attribute("rim_cells", "text", _RIMS, SAMPLED)
+CONTACT_AREA = _attribute(
+    "contact_area",
+    "m2",
+    "area in contact of the first sample at the load, less what whole cells stand out beyond rims",
+    SAMPLED,
+)
+CONTACT_AREA_RATIO = _attribute(
+    "contact_area_ratio",
+    "1",
+    "cells in contact over those of smooth bodies on the same grid, both counted",
+    SAMPLED,
+)
+ISOLATED_SHARE = _attribute(
+    "isolated_share", "1", "share of the load on cells in contact without a neighbour", SAMPLED
+)
+RIM_CELLS = _attribute(
+    "rim_cells",
+    "text",
+    "cells at the rim of a contact: whole, covered in part, or covered for some laws",
+    SAMPLED,
+)
 RIM_CELLS_CHOSEN = _attribute("rim_cells_chosen", "text", "why they were chosen", "where they were chosen")
 RMS_SLOPE = _attribute("rms_slope", "1", "rms slope Sdq of the samples on the grid", SAMPLED)
 VALIDITY = _attribute("validity", "JSON", "what bounds the range of the laws: quantity, value, limit, …")
 SAMPLES = _attribute("samples", "1", "number of samples", SAMPLED)
-_ALIKE = "whether samples and path are one population: question, value, answer, effect on levels in dB"
-POPULATION = _attribute("population", "JSON", _ALIKE, SAMPLED)
+POPULATION = _attribute(
+    "population",
+    "JSON",
+    "whether samples and path are one population: question, value, answer, effect on levels in dB",
+    SAMPLED,
+)

@@ -29,19 +29,19 @@ LIMIT = _entry("limit(setting)", "1", "why it was not changed; empty where it wa
 LAW = _entry("law", "1", "contact law")
 BAND = _entry("band", "Hz", "one-third-octave band centre")
 _OVER = "of the finer computation over that of the coarser"
-_FORCE = f"contact force level {_OVER}"
-FORCE_LEVEL_CHANGE = _changed("force_level_change(setting, law, band)", "dB", _FORCE)
+FORCE_LEVEL_CHANGE = _changed("force_level_change(setting, law, band)", "dB", f"contact force level {_OVER}")
 MOTION_LEVEL_CHANGE = _changed(
     "motion_level_change(setting, law, band)",
     "dB",
     f"level of the recorded motion, energy mean over its places, {_OVER}",
     attributes=("quantity",),
 )
-_STIFFNESS = f"mean contact stiffness {_OVER}, less one"
-STIFFNESS_CHANGE = _changed("stiffness_change(setting)", "1", _STIFFNESS)
-_SIZE = "largest size of the change of the main law's force level, 100 Hz to 5 kHz, bands that say something"
-LARGEST_CHANGE = _changed("largest_change(setting)", "dB", _SIZE)
+STIFFNESS_CHANGE = _changed("stiffness_change(setting)", "1", f"mean contact stiffness {_OVER}, less one")
+LARGEST_CHANGE = _changed(
+    "largest_change(setting)",
+    "dB",
+    "largest size of the change of the main law's force level, 100 Hz to 5 kHz, bands that say something",
+)
 LARGEST_BAND = _changed("largest_band(setting)", "Hz", "band of it")
 
-_SENTENCE = "which setting matters most, and how much"
-SENTENCE = Attribute("convergence", "verdict", "text", _SENTENCE, _ASKED)
+SENTENCE = Attribute("convergence", "verdict", "text", "which setting matters most, and how much", _ASKED)

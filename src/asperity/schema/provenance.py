@@ -27,8 +27,12 @@ DRAWN = _root(
 CITATIONS = _root("citations", "JSON", "sources of methods and data")
 VERDICT = _root("verdict", "text", "what the run says, in a few sentences")
 WARNINGS = _root("warnings", "JSON", "warnings on the physics: category, message, grade, count")
-_NAMED = "names the run by case, contents of its files and program, so that none is computed twice"
-RUN = _root("run", "text", _NAMED, "where the command line ran the case")
+RUN = _root(
+    "run",
+    "text",
+    "names the run by case, contents of its files and program, so that none is computed twice",
+    "where the command line ran the case",
+)
 
 KIND = _scenario("kind", "text", "kind of case")
 PARAMETERS = _scenario("parameters", "JSON", "every key of the case, with its value and default")

@@ -15,8 +15,9 @@ CONTACT = _entry("contact", "1", f"{CONTACTS}; of a bearing ball by ball, with t
 OFFSET = _entry("offset(contact)", "m", "position of a contact ahead of that of the run")
 STATIC_LOAD = _entry("static_load(contact)", "N", "static force of a contact")
 CONTACT_FORCE = _entry("contact_force(law, contact, time)", "N", "contact force, compression positive")
-_APPROACH = "approach of the mean surfaces, positive closing"
-RELATIVE_DISPLACEMENT = _entry("relative_displacement(law, contact, time)", "m", _APPROACH)
+RELATIVE_DISPLACEMENT = _entry(
+    "relative_displacement(law, contact, time)", "m", "approach of the mean surfaces, positive closing"
+)
 CONTACT_LOSS_SHARE = _entry("contact_loss_share(law, contact)", "1", "share of the time without contact")
 CONTACT_LOSS_EVENTS = _entry("contact_loss_events(law, contact)", "1", "losses of contact")
 LONGEST_LOSS = _entry("longest_loss(law, contact)", "s", "longest time without contact")

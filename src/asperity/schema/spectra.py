@@ -17,8 +17,9 @@ BAND_TIME_PRODUCT = _entry(
     "bandwidth times averaging time; a level has a standard deviation of 4.34/sqrt of it, dB, or more",
     attributes=("least",),
 )
-_DEVIATION = "standard deviation of a force level by the chance of one record"
-LEVEL_DEVIATION = _entry("level_deviation(band)", "dB", _DEVIATION)
+LEVEL_DEVIATION = _entry(
+    "level_deviation(band)", "dB", "standard deviation of a force level by the chance of one record"
+)
 START_SHARE = _entry(
     "start_share(band)",
     "1",
@@ -34,8 +35,9 @@ FORCE_PSD = _entry(
 FORCE_LEVEL = _level(
     "force_level(law, band)", "dB re 1 N", "contact force level, energy mean of the contacts"
 )
-_LEVEL = "level of the force of each contact"
-CONTACT_FORCE_LEVEL = _level("contact_force_level(law, contact, band)", "dB re 1 N", _LEVEL)
+CONTACT_FORCE_LEVEL = _level(
+    "contact_force_level(law, contact, band)", "dB re 1 N", "level of the force of each contact"
+)
 
 
 def _difference(to: str, law: str, condition: str) -> Entry:
