@@ -187,6 +187,19 @@ class Quantity(Bounded):
             self.refuse(value, error.remedy)
 
 
+LENGTH = Quantity("m", above=0)
+LENGTH_OR_ZERO = Quantity("m", at_least=0)
+ANGLE = Quantity("rad")
+MASS = Quantity("kg", above=0)
+FORCE = Quantity("N", above=0)
+PRESSURE = Quantity("Pa", above=0)
+STIFFNESS = Quantity("N/m", above=0)
+DAMPING = Quantity("N s/m", at_least=0)
+FREQUENCY = Quantity("Hz", above=0)
+DURATION = Quantity("s", above=0)
+DURATION_OR_ZERO = Quantity("s", at_least=0)
+
+
 @dataclass(frozen=True)
 class Number(Bounded):
     """A pure number."""
@@ -564,6 +577,16 @@ def parameter(
     """
     declared = Key(kind, None, meaning, within, otherwise, example, goes_with)
     return field(default=default, metadata={"key": declared})
+
+
+def usual_parameter(kind: ValueKind, example: Any, *told: str, **options: Any) -> Any:
+    """Declare a parameter whose default is its example; the rest is as in `parameter`."""
+    return parameter(kind, example, *told, default=kind(example), **options)
+
+
+def optional_parameter(*told: Any, **options: Any) -> Any:
+    """Declare a parameter that may be None, and is by default; the rest is as in `parameter`."""
+    return parameter(*told, default=None, **options)
 
 
 def keys_of(model: Any, otherwise: str) -> Mapping[str, Key]:

@@ -21,18 +21,21 @@ from asperity.case.bearing_sections import (
     HousingKeys,
     ShaftKeys,
 )
-from asperity.case.body import DAMPING
 from asperity.case.creep import BallCreepKeys
 from asperity.case.form import section
 from asperity.case.lubricant import LubricantKeys
 from asperity.case.measured_tables import MeasuredBearingKeys
 from asperity.case.ready_lists import IN_BEARINGS, NamedChanges, listed_changes
-from asperity.case.sections import DURATION, DURATION_OR_ZERO
 from asperity.case.speed import Speed, span_of
 from asperity.case.surface import INDEX
 from asperity.errors import InputError, PhysicsWarning
 from asperity.laws import spec_of
 from asperity.parameters import (
+    ANGLE,
+    DAMPING,
+    DURATION,
+    DURATION_OR_ZERO,
+    FREQUENCY,
     Choice,
     Flag,
     ListOf,
@@ -67,8 +70,7 @@ FEWEST = 5.0
 """Periods of the slowest tone in a record, at least."""
 _SPEED = Speed("Hz", "1/min", above=0)
 _BAND = ListOf(Quantity("Hz", at_least=0), least=2)
-_ANGLES = ListOf(Quantity("rad"), least=1)
-_RATE = Quantity("Hz", above=0)
+_ANGLES = ListOf(ANGLE, least=1)
 _SLIPS = ListOf(Number(at_least=0, at_most=0.2), least=2)
 
 
@@ -132,7 +134,7 @@ class BearingUnderLoad(AnyCase):
         "1 ns to 1 ms: bearings ring between",
     )
     sampling_rate: float = key(
-        _RATE,
+        FREQUENCY,
         "51.2 kHz",
         "samples per second of what is written",
         "1 kHz to 1 MHz: bearings are measured between",

@@ -7,11 +7,22 @@ from typing import TYPE_CHECKING, ClassVar
 
 from asperity.case.body import Rolling
 from asperity.case.form import section
-from asperity.case.rolled_over import FREQUENCY, Liveliness, RolledOver, sensors_along
+from asperity.case.rolled_over import Liveliness, RolledOver, sensors_along
 from asperity.case.scene import Case
-from asperity.case.surface import LENGTH, OF_RAILS, POSITION, Surface
+from asperity.case.surface import OF_RAILS, Surface
 from asperity.errors import InputError
-from asperity.parameters import Choice, ListOf, MaterialOrName, Number, Quantity, key, optional
+from asperity.parameters import (
+    FREQUENCY,
+    LENGTH,
+    LENGTH_OR_ZERO,
+    Choice,
+    ListOf,
+    MaterialOrName,
+    Number,
+    Quantity,
+    key,
+    optional,
+)
 from asperity.reference.materials import Material
 from asperity.units import written
 
@@ -42,7 +53,7 @@ class BeamKeys(RolledOver):
         goes_with="support=free",
     )
     supports: tuple[float, ...] | None = optional(
-        ListOf(POSITION, least=1),
+        ListOf(LENGTH_OR_ZERO, least=1),
         ["0.4 m", "0.8 m"],
         "positions of supports beside those of the ends",
         "one span",

@@ -15,6 +15,8 @@ from asperity.case.tables import TableFile, TableSource, read_table
 from asperity.errors import InputError
 from asperity.parameters import (
     FROM_PYTHON,
+    LENGTH,
+    MASS,
     Choice,
     File,
     Number,
@@ -36,10 +38,8 @@ if TYPE_CHECKING:
 
 _STIFFNESS = Quantity("N/m", at_least=0)
 _STIFF = "1 N/m to 1 TN/m: softer holds nothing, harder is rigid"
-_MASS = Quantity("kg", above=0)
 _RATIO = Number(at_least=0, at_most=0.99)
 _COUNT = Number(at_least=1, whole=True)
-_LENGTH = Quantity("m", above=0)
 _RINGS = "0.1 mm to 1 m: rings lie between"
 LOAD = Quantity("N", at_least=0)
 LOADS = "0 N to 100 MN: bearings carry less"
@@ -99,7 +99,7 @@ class ShaftKeys(Section):
     """What a ring carries, and what holds it."""
 
     mass: float = key(
-        _MASS, "1 kg", "mass of the ring with all that moves with it", "1 mg to 1000 t: what bearings carry"
+        MASS, "1 kg", "mass of the ring with all that moves with it", "1 mg to 1000 t: what bearings carry"
     )
     radial_stiffness: float = key(_STIFFNESS, "100 MN/m", "spring that holds it radially; 0 for none", _STIFF)
     axial_stiffness: float = key(_STIFFNESS, "100 MN/m", "spring that holds it axially; 0 for none", _STIFF)
@@ -145,8 +145,8 @@ class HousingKeys(ShaftKeys):
     lobes: int | None = optional(
         Number(at_least=2, at_most=20, whole=True), 4, "most lobes in which the ring bends", "it is rigid"
     )
-    width: float = key(_LENGTH, "15 mm", "width of its section", _RINGS, goes_with="lobes")
-    thickness: float = key(_LENGTH, "3 mm", "thickness of its section", _RINGS, goes_with="lobes")
+    width: float = key(LENGTH, "15 mm", "width of its section", _RINGS, goes_with="lobes")
+    thickness: float = key(LENGTH, "3 mm", "thickness of its section", _RINGS, goes_with="lobes")
 
 
 def read_roundness(table: TableSource) -> Array:

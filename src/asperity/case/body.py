@@ -7,11 +7,27 @@ from pathlib import Path
 import numpy as np
 
 from asperity.arguments import Array
-from asperity.case.surface import ADDED_LEVEL, LENGTH, LEVEL, LEVELS, POSITION, MeasuredLine
+from asperity.case.surface import ADDED_LEVEL, LEVEL, LEVELS, MeasuredLine
 from asperity.case.tables import fitted_to, read_receptance
 from asperity.case.wheel import OTHERWISE, Ringing
 from asperity.errors import InputError
-from asperity.parameters import Choice, Either, File, ListOf, MaterialOrName, Number, Quantity, key, optional
+from asperity.parameters import (
+    DAMPING,
+    FORCE,
+    LENGTH,
+    LENGTH_OR_ZERO,
+    MASS,
+    STIFFNESS,
+    Choice,
+    Either,
+    File,
+    ListOf,
+    MaterialOrName,
+    Number,
+    Quantity,
+    key,
+    optional,
+)
 from asperity.reference.cnossos import WHEEL_ROUGHNESS
 from asperity.reference.materials import Material
 from asperity.structures.body import GRAVITY, Body, Wheel, carriage, chain
@@ -23,9 +39,6 @@ MOST_CONTACTS = 200
 DEEPEST_FLAT = 0.01  # of the radius
 CLOSE_LENGTH = 0.05  # by which a measured length may differ from that of the chord
 COUNT = Number(at_least=1, at_most=MOST_CONTACTS, whole=True)
-MASS, FORCE = Quantity("kg", above=0), Quantity("N", above=0)
-STIFFNESS = Quantity("N/m", above=0)
-DAMPING = Quantity("N s/m", at_least=0)
 INERTIA = Quantity("kg m^2", above=0)
 _BODIES = "bodies that roll lie between"
 _FLAT = {"goes_with": "flat_depth or flat_length"}
@@ -70,7 +83,7 @@ class FlatOnTread(MeasuredLine):
     )
     flat_shape: str = key(Choice(("fresh", "worn")), "fresh", "a chord with sharp ends, or rounded", **_FLAT)
     flat_position: float | None = optional(
-        POSITION,
+        LENGTH_OR_ZERO,
         "1 m",
         "where the flat is on the tread, along the circumference from the point that touches at start",
         "half a turn on, or half of the record if that is shorter, so that no impact is cut",
@@ -151,7 +164,7 @@ class Rolling(Ringing, FlatOnTread):
         "a rigid mass; a chain of masses above it; a bogie on two; or a carriage on rolling elements",
     )
     positions: tuple[float, ...] = key(
-        ListOf(POSITION, least=1),
+        ListOf(LENGTH_OR_ZERO, least=1),
         ["0 m"],
         "where the bodies are, by their rearmost contacts, ahead of the position of the run",
         "0 m to 100 km: trains are shorter",

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from asperity.case.form import Section
 from asperity.errors import InputError
-from asperity.parameters import Number, Quantity, key, optional
+from asperity.parameters import ANGLE, Number, Quantity, key, optional
 
 if TYPE_CHECKING:
     from asperity.contact.friction import Friction
@@ -68,7 +68,7 @@ class CreepKeys(FallingFriction):
     """Creepages of what rolls over what it rolls over; the contact sticks up to contact.friction."""
 
     angle_of_attack: float | None = optional(
-        Quantity("rad"),
+        ANGLE,
         "8 mrad",
         "angle from the path to where what rolls heads, to the field side; minus its tangent adds to lateral",
         _NONE,

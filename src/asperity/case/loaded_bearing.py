@@ -7,7 +7,6 @@ from asperity.arguments import given_options
 from asperity.case import toml
 from asperity.case.ball_bearing import BearingUnderLoad
 from asperity.case.bearing_sections import DAMPED, LOAD, LOADS, BearingGeometry
-from asperity.case.body import DAMPING
 from asperity.case.form import Section, section
 from asperity.case.lubricant import LubricantKeys, RollerLubricantKeys
 from asperity.case.roller_bearing import (
@@ -19,7 +18,7 @@ from asperity.case.roller_bearing import (
 )
 from asperity.case.speed import span_of
 from asperity.errors import InputError, OutOfRangeWarning
-from asperity.parameters import Origin, Quantity, key, optional
+from asperity.parameters import DAMPING, Origin, Quantity, key, optional
 from asperity.reference.bearings import LISTED, named_bearings
 from asperity.speeds import SpeedCourse, at_fastest
 from asperity.structures.roller_bearing import ROLLER_BEARINGS

@@ -8,7 +8,7 @@ from asperity.case.form import Section
 from asperity.contact.film import LINES, Film, LineFilm, inlet_heating
 from asperity.contact.oil import DENSITY, GRADES, INDEX, Oil
 from asperity.errors import InputError
-from asperity.parameters import Choice, Number, Quantity, key, optional
+from asperity.parameters import DURATION, Choice, Number, Quantity, key, optional
 
 GRADE = "ISO VG "
 _VISCOSITY = Quantity("m^2/s", above=0)
@@ -55,7 +55,7 @@ class LubricantKeys(Section):
         goes_with=_WITH_OIL,
     )
     damping_time: float | None = optional(
-        Quantity("s", above=0),
+        DURATION,
         "12.5 us",
         "damping of each contact over its stiffness; bearings are said to have 2.5 to 25 us (Krämer 1993)",
         "that of its film",

@@ -12,19 +12,21 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 from asperity.arguments import Array, given_options
 from asperity.case import tables
-from asperity.case.body import INERTIA, MASS, PROFILE
+from asperity.case.body import INERTIA, PROFILE
 from asperity.case.form import Numbers, Section, name_of
 from asperity.case.measured import read_decay_rates, read_mobility
 from asperity.case.ready_lists import OVER_TRACKS, NamedChanges, listed_changes
-from asperity.case.surface import INDEX, LENGTH, POSITION, of_file
+from asperity.case.surface import INDEX, of_file
 from asperity.errors import InputError, PhysicsWarning
 from asperity.parameters import (
+    LENGTH,
+    LENGTH_OR_ZERO,
+    MASS,
     Choice,
     File,
     ListOf,
     MaterialOrName,
     Number,
-    Quantity,
     key,
     keys_of,
     optional,
@@ -53,7 +55,6 @@ LISTED = ("sleeper_spacing", "pad_stiffness", "ballast_stiffness")
 """What a table of bays holds."""
 PRELOAD_STEPS = 20
 """Steps in which the preload of pads is found, whose stiffness depends on it."""
-FREQUENCY = Quantity("Hz", above=0)
 _WIDTHS = "10 mm to 1 m: rails lie between"
 
 
@@ -134,7 +135,7 @@ class RolledOver(Section):
 def sensors_along(goes_with: str = "") -> Any:
     """Declare where the acceleration of what has an extent is recorded."""
     return optional(
-        ListOf(POSITION, least=1),
+        ListOf(LENGTH_OR_ZERO, least=1),
         ["0.2 m", "0.35 m", "0.5 m", "0.65 m", "0.8 m"],
         "positions of the accelerometers",
         "at 20, 35, 50, 65 and 80 % of the length",
@@ -203,7 +204,7 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
         "of pad and of ballast (N/m); damping goes with stiffness",
     )
     points: tuple[float, ...] | None = optional(
-        ListOf(POSITION, least=1),
+        ListOf(LENGTH_OR_ZERO, least=1),
         ["9 m", "9.3 m"],
         "positions at which the motion of the rail is recorded while it is passed, from a sleeper at 0 m",
         "over a sleeper and at mid-span in the middle of the run",

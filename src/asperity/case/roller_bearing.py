@@ -12,10 +12,9 @@ from asperity.case.form import section
 from asperity.case.lubricant import RollerLubricantKeys
 from asperity.case.named_bearing import NamedBearing
 from asperity.case.ready_lists import IN_ROLLER_BEARINGS, NamedChanges, listed_changes
-from asperity.case.sections import DURATION
 from asperity.errors import InputError
 from asperity.laws import LawSpec, Need, spec_of
-from asperity.parameters import Choice, Flag, ListOf, Quantity, key, keys_of, optional
+from asperity.parameters import ANGLE, DURATION, Choice, Flag, ListOf, key, keys_of, optional
 from asperity.rolling.resolution import steps_per_resonance
 from asperity.structures.roller_bearing import ROLLER_BEARINGS, STEEPEST_TILT, RollerBearing
 from asperity.written_numbers import rounded
@@ -25,7 +24,7 @@ if TYPE_CHECKING:
     from asperity.structures.roller_statics import LoadedRollers
 
 TILT = key(
-    Quantity("rad"),
+    ANGLE,
     "0 mrad",
     "tilt of the inner ring in the plane of the radial load",
     "-0.1 rad to 0.1 rad: shafts tilt less",

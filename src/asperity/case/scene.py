@@ -14,14 +14,14 @@ from asperity.case.form import section
 from asperity.case.measured_tables import MeasuredKeys
 from asperity.case.ready_lists import NamedChanges
 from asperity.case.rolled_over import RolledOver, TrackKeys
-from asperity.case.sections import DURATION, DURATION_OR_ZERO, ContactKeys, NoiseKeys, NumericsKeys
+from asperity.case.sections import ContactKeys, NoiseKeys, NumericsKeys
 from asperity.case.speed import Speed, refuse_course
-from asperity.case.surface import INDEX, POSITION, Surface
+from asperity.case.surface import INDEX, Surface
 from asperity.case.time_steps import on_grid, resolving
 from asperity.contact.hertz import Hertz, relative_radius
 from asperity.errors import InputError
 from asperity.laws import Need, Role, baselines, in_role, names, spec_of
-from asperity.parameters import ListOf, key, optional
+from asperity.parameters import DURATION, DURATION_OR_ZERO, LENGTH_OR_ZERO, ListOf, key, optional
 from asperity.reference.materials import contact_modulus
 from asperity.speeds import SpeedCourse, covered, reached, slowest
 from asperity.units import written
@@ -97,7 +97,7 @@ class Case(AnyCase):
     )
     seed: int = key(INDEX, 1, "seed of everything random")
     start: float | None = optional(
-        POSITION,
+        LENGTH_OR_ZERO,
         "0.2 m",
         "where the record starts",
         "after the run-in, which begins where what is rolled over does",

@@ -5,11 +5,24 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from asperity.arguments import MOST_PASSES, SHAKEDOWN, Array
-from asperity.case import body, form, measured, tables
-from asperity.case.rolled_over import FREQUENCY
-from asperity.case.surface import LENGTH, LEVEL, POSITION
+from asperity.case import form, measured, tables
+from asperity.case.surface import LEVEL
 from asperity.errors import InputError
-from asperity.parameters import Choice, Either, ListOf, Number, Quantity, key, optional
+from asperity.parameters import (
+    DAMPING,
+    DURATION,
+    FREQUENCY,
+    LENGTH,
+    LENGTH_OR_ZERO,
+    PRESSURE,
+    Choice,
+    Either,
+    ListOf,
+    Number,
+    Quantity,
+    key,
+    optional,
+)
 from asperity.reference import cnossos, railways
 from asperity.units import written
 
@@ -18,10 +31,8 @@ if TYPE_CHECKING:
     from asperity.radiation.sound_path import SoundPath
 
 MOST_CELLS = 2048  # along one side of the window
-DURATION = Quantity("s", above=0)
 _HEARD = "0 dB to 180 dB: sound that is heard lies between"
 _NOTHING = "nothing was measured"
-DURATION_OR_ZERO = Quantity("s", at_least=0)
 
 
 class ContactKeys(form.Section):
@@ -68,7 +79,7 @@ class ContactKeys(form.Section):
         "-10 mm to 10 mm: contacts are closer than that",
     )
     damping: float = key(
-        body.DAMPING,
+        DAMPING,
         "0 N s/m",
         "damping of the contact",
         "1e-9 N s/m to 1e9 N s/m: less damps nothing, more is rigid",
@@ -79,7 +90,7 @@ class ContactKeys(form.Section):
         "coefficient of friction, up to which a contact sticks: sideways, and where what rolls creeps",
     )
     hardness: float | None = optional(
-        Quantity("Pa", above=0),
+        PRESSURE,
         "3 GPa",
         "largest pressure",
         "elastic contact",
@@ -216,7 +227,7 @@ class NoiseKeys(form.Section):
         LENGTH, "135 mm", "width of the wheel's tread", "10 mm to 1 m: wheels lie between"
     )
     axle_positions: tuple[float, ...] | None = optional(
-        ListOf(POSITION, least=1, rising=True),
+        ListOf(LENGTH_OR_ZERO, least=1, rising=True),
         ["0 m", "2.5 m", "19 m", "21.5 m"],
         "axles of the vehicle that passes, behind its first; each has two wheels, on two rails",
         "the contacts that roll",
@@ -256,7 +267,7 @@ class NoiseKeys(form.Section):
         "1 m to 1 km: farther away air and weather decide",
     )
     receiver_height: float = key(
-        POSITION,
+        LENGTH_OR_ZERO,
         "1.2 m",
         "height of the receiver above the rail head",
         "1 mm to 100 m: sound comes over ground",
@@ -275,7 +286,7 @@ class NoiseKeys(form.Section):
         "1 kPa s/m^2 to 1 GPa s/m^2: snow is no softer, and rock no harder",
     )
     ground_depth: float = key(
-        POSITION,
+        LENGTH_OR_ZERO,
         "0.5 m",
         "depth of that ground below the rail head",
         "1 mm to 20 m: embankments lie between",

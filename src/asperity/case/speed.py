@@ -10,7 +10,7 @@ import numpy as np
 from asperity.case.table_headings import Column
 from asperity.case.tables import TableFile, TableSource, read_table
 from asperity.errors import InputError
-from asperity.parameters import FROM_PYTHON, Origin, Quantity
+from asperity.parameters import DURATION_OR_ZERO, FROM_PYTHON, Origin, Quantity
 from asperity.speeds import SpeedCourse
 from asperity.units import unit_in, written
 from asperity.written_numbers import rounded
@@ -18,7 +18,6 @@ from asperity.written_numbers import rounded
 _RUN = re.compile(r"\s*(\S.*?)\s*\.\.\s*(\S+\s+\S.*?)\s+in\s+(\S.*?)\s*", re.IGNORECASE)
 _POINT = re.compile(r"\s*(\S.*?)\s+at\s+(\S.*?)\s*", re.IGNORECASE)
 _TABLES = (".csv", ".txt", ".dat", ".tsv")
-_TIME = Quantity("s", at_least=0)
 _AT = " at "
 
 
@@ -73,7 +72,7 @@ class Speed(Quantity):
             self.refuse(
                 given, 'Give pairs of time and speed, as [["0 s", "600 1/min"], ["5 s", "1800 1/min"]].'
             )
-        return _TIME(given[0], origin), super().__call__(given[1], origin)
+        return DURATION_OR_ZERO(given[0], origin), super().__call__(given[1], origin)
 
     def _one(self, text: str) -> float:
         return super().__call__(text)
@@ -94,7 +93,7 @@ class Speed(Quantity):
 
 
 def _in_time(text: str) -> float:
-    return _TIME(text)
+    return DURATION_OR_ZERO(text)
 
 
 def names_table(text: str) -> bool:

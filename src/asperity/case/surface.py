@@ -12,6 +12,9 @@ from asperity.case import tables, toml
 from asperity.case.form import Section, holds_memory
 from asperity.errors import InputError
 from asperity.parameters import (
+    ANGLE,
+    LENGTH,
+    LENGTH_OR_ZERO,
     Choice,
     Either,
     File,
@@ -34,9 +37,6 @@ from asperity.units import factor, written
 from asperity.written_numbers import count_of
 
 S = TypeVar("S", HeightMap, Profile, HeightMap | Profile)
-LENGTH = Quantity("m", above=0)
-POSITION = Quantity("m", at_least=0)
-ANGLE = Quantity("rad")
 INDEX = Number(at_least=0, at_most=10**9, whole=True)
 LEVELS = tables.TableFile(read=tables.read_levels, columns=(2,), content="a table of wavelengths and levels")
 LEVEL = Quantity("dB")
@@ -257,7 +257,7 @@ class Surface(MeasuredLine, MeasuredMap):
         LENGTH, "1 m", "length of the dip", "10 um to 100 m: dips lie between", goes_with="joint_depth"
     )
     joint_position: float | None = optional(
-        POSITION,
+        LENGTH_OR_ZERO,
         "10 m",
         "position of the joint on the path",
         "the middle of the run",
@@ -363,7 +363,7 @@ class Recipe(Section):
     lines: bool | None = key(Flag(), None, "take an array for lines side by side, or for a map")
     fill: bool = key(Flag(), False, "fill points without a height")
     crop: tuple[float, ...] | None = key(
-        ListOf(POSITION), None, "x, y and both lengths of the piece of a map that is kept"
+        ListOf(LENGTH_OR_ZERO), None, "x, y and both lengths of the piece of a map that is kept"
     )
     form: str | None = key(Choice(tuple(FORMS)), None, "form that is removed")
     longest: float | None = key(LENGTH, None, "nesting index of the L-filter: longer waves are removed")

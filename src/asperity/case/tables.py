@@ -27,7 +27,17 @@ from asperity.case.table_headings import (
     without_limits,
 )
 from asperity.errors import InputError
-from asperity.parameters import FROM_PYTHON, File, Key, Origin, Problems, Quantity, keys_of, optional, outside
+from asperity.parameters import (
+    FORCE,
+    FROM_PYTHON,
+    File,
+    Key,
+    Origin,
+    Problems,
+    keys_of,
+    optional,
+    outside,
+)
 from asperity.spectra import energy_sum
 from asperity.structures import support, track_parameters
 from asperity.structures.outline import checked_outline
@@ -64,7 +74,7 @@ _TRACK = keys_of(track_parameters.TrackParameters, "")
 _OF_BAYS = ("sleeper_spacing", "pad_stiffness", "ballast_stiffness")
 """Keys whose plausible limits are those of the same columns."""
 PRELOAD_KEY = optional(
-    Quantity("N", above=0),
+    FORCE,
     "30 kN",
     "preload of the pads at which such a table is taken",
     "what a support carries of the wheel's static load",

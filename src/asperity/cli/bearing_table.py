@@ -10,14 +10,13 @@ from asperity.arguments import Array
 from asperity.case.bearing_sections import LOAD
 from asperity.case.loaded_bearing import LoadKeys, read_bearing
 from asperity.errors import InputError
-from asperity.parameters import FROM_PYTHON, Quantity
+from asperity.parameters import ANGLE, FROM_PYTHON, Quantity
 from asperity.structures.stiffness_table import SIGNS, BearingMatrices, stiffness_table
 from asperity.studies.definition import expanded, separated
 from asperity.terminal import say, say_table
 from asperity.written_numbers import count_of, rounded
 
 SPEED = Quantity("Hz", "1/min", at_least=0)
-ANGLE = Quantity("rad")
 SWEPT = {"radial": LOAD, "axial": LOAD, "speed": SPEED}
 """What may have several values."""
 MOST = 10_000

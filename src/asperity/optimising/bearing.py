@@ -15,7 +15,7 @@ from asperity.errors import InputError, PhysicsWarning
 from asperity.optimising.allocation import FREE, MOST_ROUNDS, RELAXATION, SETTLED_LEVEL, SMALLEST_SHARE
 from asperity.optimising.kinds import Optimisation
 from asperity.optimising.several_limits import cheapest
-from asperity.parameters import ListOf, Number, Quantity, key, optional
+from asperity.parameters import DURATION, ListOf, Number, Quantity, key, optional
 from asperity.progress import Progress
 from asperity.running import run
 from asperity.scenarios.prepared_bearing import ON, prepare_bearing
@@ -59,7 +59,7 @@ class BearingAim(form.Section):
     law: str = key(any_case.LAW, "areal", "law of the contact force that is rolled while searching")
     verify: str = key(any_case.LAW, "table", "law with which the bearing is rolled before and after")
     record: float = key(
-        Quantity("s", above=0),
+        DURATION,
         "0.2 s",
         "time that a trial records, as there are many; the bearing is rolled for all its duration before and "
         "after",

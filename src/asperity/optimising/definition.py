@@ -11,11 +11,11 @@ from xarray import DataTree
 from asperity.arguments import Array, FilePath, Flags
 from asperity.case import any_case, cases, form, rolled_over, scene
 from asperity.case.speed import refuse_course
-from asperity.case.surface import DEFECTS, LENGTH, LEVEL, Surface
+from asperity.case.surface import DEFECTS, LEVEL, Surface
 from asperity.errors import InputError
 from asperity.optimising.allocation import Limits
 from asperity.optimising.kinds import optimisation_of
-from asperity.parameters import Choice, ListOf, Number, Origin, Quantity, key, optional
+from asperity.parameters import LENGTH, Choice, ListOf, Number, Origin, Quantity, key, optional
 from asperity.scenarios import preparing, records
 from asperity.scenes import noise, schema
 from asperity.schema import Entry, spectra

@@ -10,10 +10,21 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 from asperity.arguments import ArrayLike, real, require
 from asperity.contact.gothic_arch import GothicArch
 from asperity.contact.hertz import Hertz, in_groove
-from asperity.parameters import Choice, MaterialOrName, Number, Quantity, checked_parameters, parameter
+from asperity.parameters import (
+    LENGTH,
+    PRESSURE,
+    Choice,
+    MaterialOrName,
+    Number,
+    Quantity,
+    checked_parameters,
+    optional_parameter,
+    parameter,
+    usual_parameter,
+)
 from asperity.reference.bearings import LISTED, listed_bearing
 from asperity.reference.materials import Material, contact_modulus
-from asperity.structures.rolling_bearing import GAP, HARD, HARDNESS, PRESSURE, STEEL, RollingBearing
+from asperity.structures.rolling_bearing import GAP, HARD, RollingBearing
 from asperity.written_numbers import rounded
 
 if TYPE_CHECKING:
@@ -22,8 +33,6 @@ if TYPE_CHECKING:
 
 BEARINGS: dict[str, dict[str, Any]] = {name: each.dimensions for name, each in LISTED.items()}
 """By the keywords of `BallBearing`, m and rad; `asperity.reference.bearings` says where they are printed."""
-CONFORMITY = 0.52
-"""Radius of a groove over the diameter of the ball, where none is printed; 0.515 to 0.53 is usual."""
 CLEARANCE = 10e-6
 """Diametral clearance of named bearings without a contact angle, m, chosen here."""
 STATIC_PRESSURE = 4.2e9
@@ -109,46 +118,47 @@ class BallBearing(RollingBearing):
         Number(at_least=3, whole=True), 9, "number of balls", "3 to 500: bearings lie between"
     )
     ball_diameter: float = parameter(
-        Quantity("m", above=0), "7.94 mm", "diameter of a ball", "0.1 mm to 1 m: balls lie between"
+        LENGTH, "7.94 mm", "diameter of a ball", "0.1 mm to 1 m: balls lie between"
     )
     pitch_diameter: float = parameter(
-        Quantity("m", above=0),
+        LENGTH,
         "39.04 mm",
         "diameter of the circle of the balls' centres",
         "1 mm to 10 m: bearings lie between",
     )
-    inner_conformity: float = parameter(
-        _CONFORMITY, 0.52, "groove radius of the inner ring over ball diameter", _USUAL, default=CONFORMITY
+    # where none is printed; 0.515 to 0.53 is usual
+    inner_conformity: float = usual_parameter(
+        _CONFORMITY, 0.52, "groove radius of the inner ring over ball diameter", _USUAL
     )
-    outer_conformity: float = parameter(
-        _CONFORMITY, 0.52, "groove radius of the outer ring over ball diameter", _USUAL, default=CONFORMITY
+    outer_conformity: float = usual_parameter(
+        _CONFORMITY, 0.52, "groove radius of the outer ring over ball diameter", _USUAL
     )
-    clearance: float | None = parameter(
-        Quantity("m"), "10 um", "diametral clearance; below zero the balls are pressed", GAP, default=None
+    clearance: float | None = optional_parameter(
+        Quantity("m"), "10 um", "diametral clearance; below zero the balls are pressed", GAP
     )
-    contact_angle: float | None = parameter(
-        _ANGLE, "15 deg", "free contact angle, instead of the clearance", _ANGLES, default=None
+    contact_angle: float | None = optional_parameter(
+        _ANGLE, "15 deg", "free contact angle, instead of the clearance", _ANGLES
     )
-    arch_angle: float | None = parameter(
+    arch_angle: float | None = optional_parameter(
         Quantity("rad", above=0),
         "35 deg",
         "angle at which a ball touches both flanks of each groove, a gothic arch",
         _ANGLES,
-        default=None,
         otherwise="grooves of one arc",
     )
-    preload: float = parameter(
-        Quantity("N", at_least=0), "0 N", "constant axial force, as of a spring", _LOADS, default=0.0
+    preload: float = usual_parameter(
+        Quantity("N", at_least=0), "0 N", "constant axial force, as of a spring", _LOADS
     )
-    hardness: float = parameter(PRESSURE, "7 GPa", "hardness of the rings", HARD, default=HARDNESS)
-    material: Material = parameter(  # noqa: RUF009
-        MaterialOrName(), "steel", "material of the rings", default=STEEL
+    # of hardened rings about 700 HV, chosen here
+    hardness: float = usual_parameter(PRESSURE, "7 GPa", "hardness of the rings", HARD)
+    material: Material = usual_parameter(  # noqa: RUF009
+        MaterialOrName(), "steel", "material of the rings"
     )
-    ball_material: Material = parameter(  # noqa: RUF009
-        MaterialOrName(), "steel", "material of the balls", default=STEEL
+    ball_material: Material = usual_parameter(  # noqa: RUF009
+        MaterialOrName(), "steel", "material of the balls"
     )
-    turning: Literal["inner", "outer"] = parameter(
-        Choice(("inner", "outer")), "inner", "the ring that turns", default="inner"
+    turning: Literal["inner", "outer"] = usual_parameter(
+        Choice(("inner", "outer")), "inner", "the ring that turns"
     )
 
     def __post_init__(self) -> None:

@@ -6,7 +6,18 @@ from typing import Any
 
 from asperity.arguments import positive, shown
 from asperity.errors import InputError
-from asperity.parameters import Number, Quantity, checked_parameters, keys_of, parameter
+from asperity.parameters import (
+    LENGTH,
+    LENGTH_OR_ZERO,
+    STIFFNESS,
+    Number,
+    Quantity,
+    checked_parameters,
+    keys_of,
+    optional_parameter,
+    parameter,
+    usual_parameter,
+)
 from asperity.structures.track import Track
 
 # UIC 60 as in the program rolland: E = 210 GPa, G = 80.769 GPa, A = 76.7 cm², I_z = 512.7 cm⁴, J = 221.2 cm⁴,
@@ -34,19 +45,19 @@ class LateralParameters:
     """Parameters of an `asperity.structures.lateral_rail.LateralTrack`, which says what they are."""
 
     track: Track
-    pad_stiffness: float | None = parameter(
-        Quantity("N/m", above=0), "100 MN/m", "lateral stiffness of a rail pad, which loses as vertically",
-        f"1 kN/m to 1 TN/m: {_PADS}", default=None, otherwise="a third of the vertical one",
+    pad_stiffness: float | None = optional_parameter(
+        STIFFNESS, "100 MN/m", "lateral stiffness of a rail pad, which loses as vertically",
+        f"1 kN/m to 1 TN/m: {_PADS}", otherwise="a third of the vertical one",
     )  # fmt: skip
-    pad_roll_stiffness: float | None = parameter(
+    pad_roll_stiffness: float | None = optional_parameter(
         Quantity("N m", above=0), "560 kN m",
         "stiffness of a rail pad against roll of the rail, per rad, which loses as vertically",
-        f"1 N m to 1 GN m: {_PADS}", default=None, otherwise="that of an even pad as wide as the rail's foot",
+        f"1 N m to 1 GN m: {_PADS}", otherwise="that of an even pad as wide as the rail's foot",
     )  # fmt: skip
-    ballast_stiffness: float | None = parameter(
-        Quantity("N/m", above=0), "150 MN/m",
+    ballast_stiffness: float | None = optional_parameter(
+        STIFFNESS, "150 MN/m",
         "lateral stiffness of the ballast under half a sleeper, which loses as vertically",
-        "1 kN/m to 1 TN/m: ballast lies between", default=None, otherwise="the vertical one",
+        "1 kN/m to 1 TN/m: ballast lies between", otherwise="the vertical one",
     )  # fmt: skip
     bending_stiffness: float = parameter(
         Quantity("N m^2", above=0), "1.08 MN m^2", "lateral bending stiffness of the rail", _STIFF,
@@ -69,42 +80,37 @@ class LateralParameters:
         Quantity("kg m", above=0), "0.28 kg m", "its polar inertia per length about its centroid", _HEAVY,
         default=DENSITY * 3.55e-5,
     )  # fmt: skip
-    head_height: float = parameter(
-        Quantity("m", above=0), "124 mm", "height of the top of the rail above its centre of twist", _LONG,
-        default=0.124,
+    head_height: float = usual_parameter(
+        LENGTH, "124 mm", "height of the top of the rail above its centre of twist", _LONG,
     )  # fmt: skip
-    foot_depth: float = parameter(
-        Quantity("m", at_least=0), "48 mm", "depth of its bottom below that", _LONG, default=0.048
+    foot_depth: float = usual_parameter(LENGTH_OR_ZERO, "48 mm", "depth of its bottom below that", _LONG)
+    centroid_height: float = usual_parameter(
+        Quantity("m"), "33 mm", "height of its centroid above that", f"-1 m to 1 m: {_RAILS}"
     )
-    centroid_height: float = parameter(
-        Quantity("m"), "33 mm", "height of its centroid above that", f"-1 m to 1 m: {_RAILS}", default=0.033
-    )
-    web_thickness: float | None = parameter(
+    web_thickness: float | None = optional_parameter(
         Quantity("m", above=0, infinite=True), "16.5 mm",
         "thickness of the web of the rail: with it the web bends across the rail, between head and foot, "
         'each of which bends and twists by itself; "inf" for a section that keeps its form',
-        _LONG, default=None, otherwise="16.5 mm of a UIC 60 rail; any other section keeps its form",
+        _LONG, otherwise="16.5 mm of a UIC 60 rail; any other section keeps its form",
     )  # fmt: skip
-    web_height: float = parameter(
-        Quantity("m", above=0), "89.5 mm", "height of the web, from the foot to the head", _LONG,
-        default=0.0895, **_BENDS,
+    web_height: float = usual_parameter(
+        LENGTH, "89.5 mm", "height of the web, from the foot to the head", _LONG, **_BENDS,
     )  # fmt: skip
-    web_depth: float = parameter(
-        Quantity("m", at_least=0), "16.5 mm", "depth of the lower end of the web below the centre of twist",
-        _LONG, default=0.0165, **_BENDS,
+    web_depth: float = usual_parameter(
+        LENGTH_OR_ZERO, "16.5 mm", "depth of the lower end of the web below the centre of twist",
+        _LONG, **_BENDS,
     )  # fmt: skip
-    head_centroid: float = parameter(
-        Quantity("m", above=0), "99 mm", "height of the centroid of the head above the centre of twist",
-        _LONG, default=0.099, **_BENDS,
+    head_centroid: float = usual_parameter(
+        LENGTH, "99 mm", "height of the centroid of the head above the centre of twist",
+        _LONG, **_BENDS,
     )  # fmt: skip
-    foot_centroid: float = parameter(
-        Quantity("m", above=0), "37 mm", "depth of the centroid of the foot below the centre of twist", _LONG,
-        default=0.037, **_BENDS,
+    foot_centroid: float = usual_parameter(
+        LENGTH, "37 mm", "depth of the centroid of the foot below the centre of twist", _LONG,
+        **_BENDS,
     )  # fmt: skip
-    foot_torsion_share: float = parameter(
+    foot_torsion_share: float = usual_parameter(
         Number(at_least=0.01, at_most=0.99), 0.28,
-        "share of the foot in the torsional stiffness of the rail, of which the head has the rest",
-        default=0.28, **_BENDS,
+        "share of the foot in the torsional stiffness of the rail, of which the head has the rest", **_BENDS,
     )  # fmt: skip
     foot_width: float = 0.15
 

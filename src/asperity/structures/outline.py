@@ -17,7 +17,7 @@ from asperity.arguments import (
     require,
 )
 from asperity.errors import ComputationError, InputError
-from asperity.parameters import Number, Quantity, parameter
+from asperity.parameters import LENGTH, LENGTH_OR_ZERO, Number, Quantity, parameter
 from asperity.reference.railways import SECTIONS
 from asperity.written_numbers import rounded
 
@@ -324,7 +324,6 @@ def _quadratic(corners: Array, triangles: Integers, around: int) -> Mesh:
 
 BACK = 0.070
 """Distance of the running circle from the back of the flange, m."""
-_LENGTH = Quantity("m", above=0)
 _WITHIN = "1 mm to 1 m: wheels lie between"
 _OFFSET = Quantity("m")
 _SIDE = "-0.5 m to 0.5 m: wheels are narrower"
@@ -366,27 +365,27 @@ class WheelSection:
     """
 
     bore_radius: float = parameter(
-        _LENGTH, "92.5 mm", "radius of the seat on the axle, where the wheel is held", _WITHIN
+        LENGTH, "92.5 mm", "radius of the seat on the axle, where the wheel is held", _WITHIN
     )
-    hub_radius: float = parameter(_LENGTH, "135 mm", "radius of the hub", _WITHIN)
-    hub_width: float = parameter(_LENGTH, "175 mm", "width of the hub along the axle", _WITHIN)
+    hub_radius: float = parameter(LENGTH, "135 mm", "radius of the hub", _WITHIN)
+    hub_width: float = parameter(LENGTH, "175 mm", "width of the hub along the axle", _WITHIN)
     hub_offset: float = parameter(
         _OFFSET, "45 mm", "by how much the hub's middle stands outside that of the rim", _SIDE
     )
-    web_thickness: float = parameter(_LENGTH, "28 mm", "thickness of the web at the hub", _WITHIN)
-    web_thickness_rim: float = parameter(_LENGTH, "22 mm", "thickness of the web at the rim", _WITHIN)
+    web_thickness: float = parameter(LENGTH, "28 mm", "thickness of the web at the hub", _WITHIN)
+    web_thickness_rim: float = parameter(LENGTH, "22 mm", "thickness of the web at the rim", _WITHIN)
     web_bend: float = parameter(
         _OFFSET, "20 mm", "by how much the web bends outwards in its middle, beside its way to the rim", _SIDE
     )
     fillet_radius: float = parameter(
-        Quantity("m", at_least=0), "25 mm", "radius of the fillets between web, hub and rim", _WITHIN
+        LENGTH_OR_ZERO, "25 mm", "radius of the fillets between web, hub and rim", _WITHIN
     )
-    rim_thickness: float = parameter(_LENGTH, "65 mm", "thickness of the rim at the running circle", _WITHIN)
-    rim_width: float = parameter(_LENGTH, "135 mm", "width of the rim with the flange", _WITHIN)
+    rim_thickness: float = parameter(LENGTH, "65 mm", "thickness of the rim at the running circle", _WITHIN)
+    rim_width: float = parameter(LENGTH, "135 mm", "width of the rim with the flange", _WITHIN)
     flange_height: float = parameter(
-        Quantity("m", at_least=0), "28 mm", "height of the flange, 0 m without one", _WITHIN
+        LENGTH_OR_ZERO, "28 mm", "height of the flange, 0 m without one", _WITHIN
     )
-    flange_thickness: float = parameter(_LENGTH, "32 mm", "thickness of the flange", _WITHIN)
+    flange_thickness: float = parameter(LENGTH, "32 mm", "thickness of the flange", _WITHIN)
     tread_slope: float = parameter(
         Number(at_least=0, at_most=0.5), 0.05, "by how much the tread's radius falls per length outwards"
     )

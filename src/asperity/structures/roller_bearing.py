@@ -13,10 +13,23 @@ from asperity.arguments import Array, ArrayLike, one_of, require
 from asperity.contact.crowning import FORMS, OF_DIAMETER, Crowning, Form
 from asperity.contact.hertz import relative_radius
 from asperity.contact.slices import FEWEST, SLICES, SlicedContact
-from asperity.parameters import Choice, MaterialOrName, Number, Quantity, checked_parameters, parameter
+from asperity.parameters import (
+    LENGTH,
+    LENGTH_OR_ZERO,
+    PRESSURE,
+    STIFFNESS,
+    Choice,
+    MaterialOrName,
+    Number,
+    Quantity,
+    checked_parameters,
+    optional_parameter,
+    parameter,
+    usual_parameter,
+)
 from asperity.reference.materials import Material, contact_modulus
 from asperity.structures.ball_bearing import BallBearing
-from asperity.structures.rolling_bearing import GAP, HARD, HARDNESS, PRESSURE, STEEL, RollingBearing
+from asperity.structures.rolling_bearing import GAP, HARD, RollingBearing
 from asperity.units import written
 from asperity.written_numbers import rounded
 
@@ -42,7 +55,6 @@ _LEFT_OUT = (
     "no friction in the motion, and no rib but that of tapered rollers; while it turns rings are held at "
     "their tilt, rollers at half of it; slices of a roller do not know of each other, nor of sharp ends"
 )
-_LENGTH = Quantity("m", above=0)
 
 
 @dataclass(frozen=True)
@@ -124,23 +136,22 @@ class RollerBearing(RollingBearing):
         Number(at_least=3, whole=True), 13, "number of rollers", "3 to 500: bearings lie between"
     )
     roller_diameter: float = parameter(
-        _LENGTH, "7.5 mm", "diameter of a roller", "0.1 mm to 1 m: rollers lie between"
+        LENGTH, "7.5 mm", "diameter of a roller", "0.1 mm to 1 m: rollers lie between"
     )
     roller_length: float = parameter(
-        _LENGTH, "7.8 mm", "length along which a roller carries", "0.1 mm to 2 m: rollers lie between"
+        LENGTH, "7.8 mm", "length along which a roller carries", "0.1 mm to 2 m: rollers lie between"
     )
     pitch_diameter: float = parameter(
-        _LENGTH,
+        LENGTH,
         "39 mm",
         "diameter of the circle of the rollers' centres",
         "1 mm to 10 m: bearings lie between",
     )
-    contact_angle: float = parameter(
+    contact_angle: float = usual_parameter(
         Quantity("rad", at_least=0, at_most=1.4),
         "0 deg",
         "angle of the raceways to the axis; 0 of cylindrical rollers",
         "0 deg to 80 deg: radial bearings lie between",
-        default=0.0,
     )
     taper: float = parameter(
         Quantity("rad", at_least=0, at_most=0.35),
@@ -149,12 +160,11 @@ class RollerBearing(RollingBearing):
         "0 deg to 20 deg: tapered rollers lie between",
         default=0.0,
     )
-    rib_stiffness: float | None = parameter(
-        Quantity("N/m", above=0),
+    rib_stiffness: float | None = optional_parameter(
+        STIFFNESS,
         "300 MN/m",
         "stiffness of the end of a tapered roller on the rib",
         "1 N/m to 1 TN/m: softer holds nothing, harder is rigid",
-        default=None,
         otherwise="the rib is rigid",
         goes_with="taper",
     )
@@ -170,39 +180,37 @@ class RollerBearing(RollingBearing):
     clearance: float = parameter(
         Quantity("m"), "20 um", "diametral clearance; below zero the rollers are pressed", GAP, default=0.0
     )
-    crowning: Form = parameter(  # noqa: RUF009
-        Choice(FORMS), "logarithmic", "form of the rollers along their length", default="logarithmic"
+    crowning: Form = usual_parameter(  # noqa: RUF009
+        Choice(FORMS), "logarithmic", "form of the rollers along their length"
     )
-    crowning_drop: float | None = parameter(
-        Quantity("m", at_least=0),
+    crowning_drop: float | None = optional_parameter(
+        LENGTH_OR_ZERO,
         "2.6 um",
         "how far they fall back at the ends; of logarithmic ones the factor of the logarithm",
         "1 nm to 1 mm: crownings lie between",
-        default=None,
         otherwise="0 of cylindrical rollers, and 0.00035 diameters of others",
     )
-    crowning_straight: float = parameter(
-        Quantity("m", at_least=0),
+    crowning_straight: float = usual_parameter(
+        LENGTH_OR_ZERO,
         "0 mm",
         "length of the straight middle of a partial crowning",
         "0 mm to 1 m: rollers lie between",
-        default=0.0,
     )
-    slices: int = parameter(
+    slices: int = usual_parameter(
         Number(at_least=FEWEST, at_most=1000, whole=True),
         SLICES,
         "slices along a roller",
-        default=SLICES,
     )
-    hardness: float = parameter(PRESSURE, "7 GPa", "hardness of the rings", HARD, default=HARDNESS)
-    material: Material = parameter(  # noqa: RUF009
-        MaterialOrName(), "steel", "material of the rings", default=STEEL
+    # of hardened rings about 700 HV, chosen here
+    hardness: float = usual_parameter(PRESSURE, "7 GPa", "hardness of the rings", HARD)
+    material: Material = usual_parameter(  # noqa: RUF009
+        MaterialOrName(), "steel", "material of the rings"
     )
-    roller_material: Material = parameter(  # noqa: RUF009
-        MaterialOrName(), "steel", "material of the rollers", default=STEEL
+    roller_material: Material = usual_parameter(  # noqa: RUF009
+        MaterialOrName(), "steel", "material of the rollers"
     )
-    turning: Literal["inner", "outer"] = parameter(
-        Choice(("inner", "outer")), "inner", "the ring that turns", default="inner"
+    turning: Literal["inner", "outer"] = usual_parameter(
+        Choice(("inner", "outer")), "inner", "the ring that turns"
     )
 
     def __post_init__(self) -> None:

@@ -10,11 +10,7 @@ import numpy as np
 
 from asperity.arguments import Array, not_negative, one_of, real, require, whole
 from asperity.diagnostics.hypotheses import Tone
-from asperity.parameters import Quantity
-from asperity.reference.materials import MATERIALS
 
-HARDNESS = 7.0e9
-"""Of hardened rings, Pa: about 700 HV, chosen here."""
 SLIP = 0.01
 """Share by which the cage of a bearing that is loaded lags at most."""
 FASTEST = 1e6
@@ -22,8 +18,6 @@ FASTEST = 1e6
 bearings that are listed for general use run slower."""
 PARTS = ("outer", "inner", "ball")
 """What can be wavy or faulty."""
-STEEL = MATERIALS["steel"]
-PRESSURE = Quantity("Pa", above=0)
 GAP = "-1 mm to 10 mm: bearings lie between"
 HARD = "1 MPa to 100 GPa: no solid is as soft, or as hard"
 

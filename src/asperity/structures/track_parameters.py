@@ -7,7 +7,22 @@ import numpy as np
 
 from asperity.arguments import Array, not_negative, require, shown, whole
 from asperity.errors import InputError
-from asperity.parameters import Flag, Number, Quantity, checked_parameters, keys_of, parameter
+from asperity.parameters import (
+    DAMPING,
+    FORCE,
+    FREQUENCY,
+    LENGTH,
+    MASS,
+    STIFFNESS,
+    Flag,
+    Number,
+    Quantity,
+    checked_parameters,
+    keys_of,
+    optional_parameter,
+    parameter,
+    usual_parameter,
+)
 from asperity.structures.support import MeasuredSleeper, Relaxation, StiffnessTable, keep_as_tuples
 from asperity.written_numbers import count_of, rounded
 
@@ -97,11 +112,8 @@ class Relaxations:
 
 LAYERS = ("pad", "under_sleeper_pad", "ballast", "subgrade")
 """Springs between the rail and rigid ground, from the rail down."""
-_STIFFNESS = Quantity("N/m", above=0)
-_DAMPING = Quantity("N s/m", at_least=0)
 _LOSS = Number(at_least=0, at_most=5)
-_METRE = Quantity("m", above=0)
-_MASS, _BENDING = Quantity("kg", above=0), Quantity("N m^2", above=0)
+_MASS, _BENDING = MASS, Quantity("N m^2", above=0)
 _RAILS = "rails lie between"
 _PADS = "pads lie between"
 _BALLAST = "ballast lies between"
@@ -113,7 +125,7 @@ def _lossy(layer: str, words: str, damping: str, loss: float, lie: str, goes_wit
     own: dict[str, Any] = {"default": None, "goes_with": goes_with}
     factor = f"loss factor of {words}, instead of {layer}_damping; approximated in time"
     return [
-        parameter(_DAMPING, damping, f"viscous damping of {words}", f"1e-3 N s/m to 1e9 N s/m: {lie}", **own),
+        parameter(DAMPING, damping, f"viscous damping of {words}", f"1e-3 N s/m to 1e9 N s/m: {lie}", **own),
         parameter(_LOSS, loss, factor, **own),
     ]
 
@@ -121,7 +133,7 @@ def _lossy(layer: str, words: str, damping: str, loss: float, lie: str, goes_wit
 def _layer(layer: str, words: str, stiffness: str, damping: str, loss: float, lie: str) -> list[Any]:
     """Declare a layer that a track may have: stiffness, viscous damping and loss factor."""
     within = f"1 kN/m to 1 TN/m: {lie}"
-    of_stiffness = parameter(_STIFFNESS, stiffness, f"stiffness of {words}", within, default=None)
+    of_stiffness = parameter(STIFFNESS, stiffness, f"stiffness of {words}", within, default=None)
     return [of_stiffness, *_lossy(layer, words, damping, loss, lie, f"{layer}_stiffness")]
 
 
@@ -146,7 +158,7 @@ class TrackParameters:
         Quantity("kg/m", above=0), "60 kg/m", "mass of the rail per length", f"1 kg/m to 1000 kg/m: {_RAILS}"
     )
     pad_stiffness: float = parameter(
-        _STIFFNESS, "300 MN/m", "stiffness of a rail pad", f"1 kN/m to 1 TN/m: {_PADS}"
+        STIFFNESS, "300 MN/m", "stiffness of a rail pad", f"1 kN/m to 1 TN/m: {_PADS}"
     )
     sleeper_mass: float = parameter(
         Quantity("kg", at_least=0),
@@ -161,7 +173,7 @@ class TrackParameters:
         f"1 kN/m to 1 TN/m: {_BALLAST}",
     )
     sleeper_spacing: float = parameter(
-        _METRE, "0.6 m", "distance of the sleepers", "0.1 m to 10 m: sleepers are as far apart"
+        LENGTH, "0.6 m", "distance of the sleepers", "0.1 m to 10 m: sleepers are as far apart"
     )
     rail_loss_factor: float = parameter(_LOSS, 0.01, "loss factor of the rail", default=0.0)
     pad_damping: float | None = _PAD[0]
@@ -176,54 +188,48 @@ class TrackParameters:
     )
     ballast_damping: float | None = _BED[0]
     ballast_loss_factor: float | None = _BED[1]
-    shear_stiffness: float | None = parameter(
-        Quantity("N", above=0),
+    shear_stiffness: float | None = optional_parameter(
+        FORCE,
         "243 MN",
         "shear stiffness of the rail; with it, the rail is a Timoshenko beam",
         f"1 kN to 1 TN: {_RAILS}",
-        default=None,
     )
-    rotary_inertia: float | None = parameter(
+    rotary_inertia: float | None = optional_parameter(
         Quantity("kg m", above=0),
         "0.24 kg m",
         "rotary inertia of the rail per length",
         f"1e-6 kg m to 1000 kg m: {_RAILS}",
-        default=None,
     )
-    sleeper_bending_stiffness: float | None = parameter(
+    sleeper_bending_stiffness: float | None = optional_parameter(
         _BENDING,
         "6 MN m^2",
         "bending stiffness of a sleeper; without it, half sleepers are rigid",
         f"1 N m^2 to 1 GN m^2: {_SLEEPERS}",
-        default=None,
     )
-    sleeper_length: float = parameter(
-        _METRE, "2.6 m", "length of a sleeper that bends", f"0.5 m to 10 m: {_SLEEPERS}", default=2.6, **_BENT
+    sleeper_length: float = usual_parameter(
+        LENGTH, "2.6 m", "length of a sleeper that bends", f"0.5 m to 10 m: {_SLEEPERS}", **_BENT
     )
-    seat_distance: float = parameter(
-        _METRE,
+    seat_distance: float = usual_parameter(
+        LENGTH,
         "1.5 m",
         "distance of the two rails, middle to middle",
         f"0.2 m to 5 m: {_RAILS}",
-        default=1.5,
         **_BENT,
     )
-    sleeper_loss_factor: float | None = parameter(
+    sleeper_loss_factor: float | None = optional_parameter(
         Number(at_least=0, at_most=1),
         0.03,
         "loss factor of a sleeper that bends; approximated in time",
-        default=None,
         **_BENT,
     )
     under_sleeper_pad_stiffness: float | None = _UNDER_SLEEPER_PAD[0]
     under_sleeper_pad_damping: float | None = _UNDER_SLEEPER_PAD[1]
     under_sleeper_pad_loss_factor: float | None = _UNDER_SLEEPER_PAD[2]
-    ballast_mass: float | None = parameter(
+    ballast_mass: float | None = optional_parameter(
         _MASS,
         "300 kg",
         "mass of the ballast that moves with half a sleeper, between ballast and subgrade",
         f"1 kg to 100 t: {_BALLAST}",
-        default=None,
         goes_with="subgrade_stiffness",
     )
     subgrade_stiffness: float | None = _SUBGRADE[0]
@@ -236,15 +242,14 @@ class TrackParameters:
         "that each stands for",
         default=False,
     )
-    rail_damper_mass: float | None = parameter(
+    rail_damper_mass: float | None = optional_parameter(
         _MASS,
         "15 kg",
         "mass of a tuned damper on the rail in the middle of every bay",
         "1 g to 1 t: rail dampers lie between",
-        default=None,
     )
     rail_damper_frequency: float | None = parameter(
-        Quantity("Hz", above=0),
+        FREQUENCY,
         "800 Hz",
         "natural frequency of such a damper on a rail that holds still",
         "1 Hz to 20 kHz: rail dampers lie between",

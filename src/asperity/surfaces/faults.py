@@ -10,7 +10,18 @@ import numpy as np
 
 from asperity.arguments import Array, ArrayLike, Flags, NDArray, require
 from asperity.errors import OutOfRangeWarning
-from asperity.parameters import Choice, File, Number, Quantity, checked_parameters, parameter
+from asperity.parameters import (
+    ANGLE,
+    LENGTH,
+    LENGTH_OR_ZERO,
+    Choice,
+    File,
+    Number,
+    Quantity,
+    checked_parameters,
+    optional_parameter,
+    usual_parameter,
+)
 from asperity.surfaces.edges import FAR, REACH, Edges
 from asperity.surfaces.heightmap import HeightMap
 
@@ -19,7 +30,6 @@ HOLLOWS = ("pit", "spall")
 SHAPES = (*HOLLOWS, "dent", "particle", "mark", "map")
 PARTS = 6
 """Parts of a cell along and across for the mean depth of one that an edge crosses."""
-LENGTH = Quantity("m", above=0)
 MAP = File(held=(HeightMap,), content="a height map")
 _BURRS = "1 um to 10 mm: burrs lie between"
 _SIZE = "1 um to 1 m: faults lie between"
@@ -80,28 +90,22 @@ class Fault:
     [-0.00028, -0.00028, 0.0]
     """
 
-    shape: str = parameter(Choice(SHAPES), "pit", "kind of fault", default="pit")
-    angle: float = parameter(Quantity("rad"), "0 deg", "angle of its middle around", _TURN, default=0.0)
-    offset: float = parameter(
-        Quantity("m"), "0 mm", "distance of its middle from the path", _OFFSET, default=0.0
+    shape: str = usual_parameter(Choice(SHAPES), "pit", "kind of fault")
+    angle: float = usual_parameter(ANGLE, "0 deg", "angle of its middle around", _TURN)
+    offset: float = usual_parameter(Quantity("m"), "0 mm", "distance of its middle from the path", _OFFSET)
+    length: float = optional_parameter(LENGTH, "0.18 mm", "length along the path", _SIZE)
+    width: float = optional_parameter(LENGTH, "0.18 mm", "width across, as its length", _SIZE)
+    depth: float = optional_parameter(LENGTH, "0.28 mm", "depth, or height of a particle", _DEPTH)
+    edge: float = usual_parameter(LENGTH_OR_ZERO, "0 um", "length over which a pit or spall falls", _SIZE)
+    burr: float = usual_parameter(LENGTH_OR_ZERO, "0 um", "height of the burr around a pit or spall", _DEPTH)
+    burr_width: float = usual_parameter(LENGTH, "50 um", "width of that burr", _BURRS)
+    rim: float = usual_parameter(_RIM, 1.0, "volume of a dent's rim over the dent's")
+    rim_width: float = usual_parameter(
+        Number(above=0, at_most=10), 1.0, "width of the rim over half a dent's"
     )
-    length: float = parameter(LENGTH, "0.18 mm", "length along the path", _SIZE, default=None)
-    width: float = parameter(LENGTH, "0.18 mm", "width across, as its length", _SIZE, default=None)
-    depth: float = parameter(LENGTH, "0.28 mm", "depth, or height of a particle", _DEPTH, default=None)
-    edge: float = parameter(
-        Quantity("m", at_least=0), "0 um", "length over which a pit or spall falls", _SIZE, default=0.0
-    )
-    burr: float = parameter(
-        Quantity("m", at_least=0), "0 um", "height of the burr around a pit or spall", _DEPTH, default=0.0
-    )
-    burr_width: float = parameter(LENGTH, "50 um", "width of that burr", _BURRS, default=50e-6)
-    rim: float = parameter(_RIM, 1.0, "volume of a dent's rim over the dent's", default=1.0)
-    rim_width: float = parameter(
-        Number(above=0, at_most=10), 1.0, "width of the rim over half a dent's", default=1.0
-    )
-    count: int = parameter(Number(at_least=1, whole=True), 1, "faults alike around", _COUNT, default=1)
-    map: HeightMap | Path | None = parameter(  # noqa: RUF009
-        MAP, "spall.x3p", "heights of the fault", default=None
+    count: int = usual_parameter(Number(at_least=1, whole=True), 1, "faults alike around", _COUNT)
+    map: HeightMap | Path | None = optional_parameter(  # noqa: RUF009
+        MAP, "spall.x3p", "heights of the fault"
     )
 
     def __post_init__(self) -> None:

@@ -10,9 +10,19 @@ import numpy as np
 from scipy import fft
 
 from asperity.arguments import Array, ArrayLike, Complex, Flags, finite_array, require, two_lengths
-from asperity.parameters import File, ListOf, Number, Quantity, checked_parameters, parameter
+from asperity.parameters import (
+    LENGTH,
+    LENGTH_OR_ZERO,
+    File,
+    ListOf,
+    Number,
+    checked_parameters,
+    optional_parameter,
+    parameter,
+    usual_parameter,
+)
 from asperity.surfaces.edges import Edges
-from asperity.surfaces.faults import LENGTH, MAP, Fault, lay, map_of
+from asperity.surfaces.faults import MAP, Fault, lay, map_of
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.likeness import likeness
 from asperity.surfaces.strip import places_across
@@ -30,7 +40,7 @@ _LENGTHS = "1 nm to 1 m: textures lie between"
 _RATIOS = "0.001 to 1000: lay is no longer"
 _FALL = Number(at_least=-10, at_most=10)
 _ORDER = Number(at_least=1, whole=True)
-_AMPLITUDES = ListOf(Quantity("m", at_least=0))
+_AMPLITUDES = ListOf(LENGTH_OR_ZERO)
 _TRACE = File(columns=(2,), content="a table of angle and deviation")
 
 
@@ -67,22 +77,22 @@ class AroundTexture:
     amplitudes: tuple[float, ...] = parameter(
         _AMPLITUDES, ["1 um", "0.1 um"], "amplitude of each of the waves", _LISTED_WAVES, default=()
     )
-    waviness: float | None = parameter(LENGTH, "0.5 um", "amplitude at first_order", _WAVES, default=None)
-    first_order: int = parameter(_ORDER, 2, "fewest waves per turn of the waviness", _HIGHEST, default=2)
-    last_order: int = parameter(_ORDER, 100, "most waves per turn of it", _HIGHEST, default=100)
-    fall: float = parameter(_FALL, 1.5, "p of its amplitudes, which fall as order^-p", default=1.5)
-    trace: Array | None = parameter(  # noqa: RUF009
-        _TRACE, "roundness.csv", "measured roundness", default=None
+    waviness: float | None = optional_parameter(LENGTH, "0.5 um", "amplitude at first_order", _WAVES)
+    first_order: int = usual_parameter(_ORDER, 2, "fewest waves per turn of the waviness", _HIGHEST)
+    last_order: int = usual_parameter(_ORDER, 100, "most waves per turn of it", _HIGHEST)
+    fall: float = usual_parameter(_FALL, 1.5, "p of its amplitudes, which fall as order^-p")
+    trace: Array | None = optional_parameter(  # noqa: RUF009
+        _TRACE, "roundness.csv", "measured roundness"
     )
-    roughness: float | None = parameter(LENGTH, "20 nm", "rms of the roughness", _RMS, default=None)
-    hurst: float = parameter(Number(above=0, at_most=1), 0.8, "its Hurst exponent", default=0.8)
-    longest: float = parameter(LENGTH, "0.5 mm", "its roll-off wavelength", _LENGTHS, default=0.5e-3)
-    shortest: float = parameter(LENGTH, "50 um", "its shortest wavelength", _LENGTHS, default=50e-6)
-    anisotropy: float = parameter(
-        Number(above=0), 1.0, "its correlation length along over that across", _RATIOS, default=1.0
+    roughness: float | None = optional_parameter(LENGTH, "20 nm", "rms of the roughness", _RMS)
+    hurst: float = usual_parameter(Number(above=0, at_most=1), 0.8, "its Hurst exponent")
+    longest: float = usual_parameter(LENGTH, "0.5 mm", "its roll-off wavelength", _LENGTHS)
+    shortest: float = usual_parameter(LENGTH, "50 um", "its shortest wavelength", _LENGTHS)
+    anisotropy: float = usual_parameter(
+        Number(above=0), 1.0, "its correlation length along over that across", _RATIOS
     )
-    map: HeightMap | Path | None = parameter(  # noqa: RUF009
-        MAP, "raceway.x3p", "measured roughness instead", default=None
+    map: HeightMap | Path | None = optional_parameter(  # noqa: RUF009
+        MAP, "raceway.x3p", "measured roughness instead"
     )
 
     def __post_init__(self) -> None:

@@ -5,8 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from asperity.case.rolled_over import RolledOver, sensors_along
-from asperity.case.surface import LENGTH
-from asperity.parameters import MaterialOrName, Number, key
+from asperity.parameters import LENGTH, MaterialOrName, Number, key
 from asperity.reference.materials import Material
 
 MODES_BEYOND = 4.0

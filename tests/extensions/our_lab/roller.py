@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from asperity.case.body import STIFFNESS, Rolling
+from asperity.case.body import Rolling
 from asperity.case.form import section
 from asperity.case.rolled_over import RolledOver
 from asperity.case.scene import Case
-from asperity.parameters import Choice, MaterialOrName, key
+from asperity.parameters import STIFFNESS, Choice, MaterialOrName, key
 from asperity.reference.materials import Material
 from asperity.structures.modal import STATIC, STATIC_DAMPING
 
