@@ -15,34 +15,8 @@ from asperity.arguments import Array, NDArray, nearest, no_file, shown
 from asperity.errors import InputError
 from asperity.reference.materials import MATERIALS, Material, solid
 from asperity.text_files import BACKSLASH
-from asperity.units import factor, quantity, written
+from asperity.units import IN_WORDS, factor, limits_in, quantity, written
 from asperity.written_numbers import count_of, rounded
-
-_WORDS = {
-    "m": ("a length", "25 mm"),
-    "s": ("a time", "0.5 s"),
-    "m/s": ("a speed", "1 m/s"),
-    "kg": ("a mass", "0.5 kg"),
-    "N": ("a force", "5 N"),
-    "Pa": ("a pressure", "3 GPa"),
-    "Pa s/m^2": ("a flow resistivity", "200 kPa s/m^2"),
-    "kg/m^3": ("a density", "2700 kg/m^3"),
-    "Hz": ("a frequency", "5 kHz"),
-    "N s/m": ("a damping constant", "10 N s/m"),
-    "N/m": ("a stiffness", "300 MN/m"),
-    "N m": ("a rotational stiffness per rad", "500 kN m"),
-    "N m^2": ("a bending stiffness", "4.7 MN m^2"),
-    "kg/m": ("a mass per length", "60 kg/m"),
-    "kg m": ("a rotary inertia per length", "0.24 kg m"),
-    "kg m^2": ("a moment of inertia", "1500 kg m^2"),
-    "dB": ("a level", "+0 dB"),
-    "rad": ("an angle", "30 deg"),
-    "rad/m": ("an angle per length", "0.1 rad/m"),
-    "m^3/J": ("a wear rate", "7e-4 mm^3/J"),
-    "m^2/s": ("a kinematic viscosity", "68 mm^2/s"),
-    "degC": ("a temperature", "70 degC"),
-    "Pa^-1": ("a pressure-viscosity coefficient", "20 GPa^-1"),
-}
 
 _MEANT = {"rad": "deg", "m/s": "km/h"}
 """Units that people leave out as often as the SI unit."""
@@ -151,7 +125,7 @@ class Quantity(Bounded):
     @property
     def allowed(self) -> str:
         """What may stand behind the key."""
-        word, example = _WORDS[self.dimension]
+        word, example = IN_WORDS[self.dimension]
         if self.meant:
             example = f"1800 {self.meant}"
         return f'{word}{self.bounds}, with its unit, as "{example}"'
@@ -589,16 +563,12 @@ def optional_parameter(*told: Any, **options: Any) -> Any:
     return parameter(*told, default=None, **options)
 
 
+@cache
 def keys_of(model: Any, otherwise: str) -> Mapping[str, Key]:
     """Keys of the parameters that a physical dataclass declares.
 
     `otherwise` is what holds without them, where they do not say it themselves.
     """
-    return _keys_of(model, otherwise)
-
-
-@cache
-def _keys_of(model: Any, otherwise: str) -> Mapping[str, Key]:
     declared = {each.name: each.metadata["key"] for each in fields(model) if "key" in each.metadata}
     return {name: replace(key, otherwise=key.otherwise or otherwise) for name, key in declared.items()}
 
@@ -613,11 +583,3 @@ def checked_parameters(model: Any) -> None:
                 first = error.errors[0] if isinstance(error, Problems) else error
                 of = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(model).__name__).lower()
                 raise first.about(f"{name} of the {of}") from None
-
-
-@cache
-def limits_in(within: str) -> tuple[str, str, str]:
-    """Limits and reason of a text as ``"1 mm to 1 km: beams lie between"``."""
-    limits, _, reason = within.partition(": ")
-    least, _, most = limits.partition(" to ")
-    return least, most, reason

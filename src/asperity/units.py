@@ -3,7 +3,7 @@
 import math
 import re
 from decimal import Decimal
-from functools import lru_cache
+from functools import cache, lru_cache
 
 from asperity.errors import InputError
 from asperity.unit_table import ONE, is_known, scale_of, symbols
@@ -16,6 +16,32 @@ _POWER = r"(?:(?:\^|\*\*)?-?[1-9]|[²³])?"
 _UNIT = re.compile(rf"[A-Za-zµμΩ°%]+{_POWER}(?:\s*[ */·]\s*[A-Za-zµμΩ°%]+{_POWER})*")
 _IN_BRACKETS = re.compile(r"[(\[]((?:[^()\[\]]|\([^()\[\]]*\))*)[)\]]")
 _NUMERATOR, _DENOMINATOR = re.compile(r"^\(([^()]*)\)(?=/)"), re.compile(r"/ ?\(([^()]*)\)")
+IN_WORDS = {
+    "m": ("a length", "25 mm"),
+    "s": ("a time", "0.5 s"),
+    "m/s": ("a speed", "1 m/s"),
+    "kg": ("a mass", "0.5 kg"),
+    "N": ("a force", "5 N"),
+    "Pa": ("a pressure", "3 GPa"),
+    "Pa s/m^2": ("a flow resistivity", "200 kPa s/m^2"),
+    "kg/m^3": ("a density", "2700 kg/m^3"),
+    "Hz": ("a frequency", "5 kHz"),
+    "N s/m": ("a damping constant", "10 N s/m"),
+    "N/m": ("a stiffness", "300 MN/m"),
+    "N m": ("a rotational stiffness per rad", "500 kN m"),
+    "N m^2": ("a bending stiffness", "4.7 MN m^2"),
+    "kg/m": ("a mass per length", "60 kg/m"),
+    "kg m": ("a rotary inertia per length", "0.24 kg m"),
+    "kg m^2": ("a moment of inertia", "1500 kg m^2"),
+    "dB": ("a level", "+0 dB"),
+    "rad": ("an angle", "30 deg"),
+    "rad/m": ("an angle per length", "0.1 rad/m"),
+    "m^3/J": ("a wear rate", "7e-4 mm^3/J"),
+    "m^2/s": ("a kinematic viscosity", "68 mm^2/s"),
+    "degC": ("a temperature", "70 degC"),
+    "Pa^-1": ("a pressure-viscosity coefficient", "20 GPa^-1"),
+}
+"""What is measured in an SI unit, and an example."""
 _LONGEST = 40  # characters
 _LONGEST_QUANTITY = 200  # characters: a number to the last bit and its unit have 70
 
@@ -182,3 +208,11 @@ def _prefixed(value: float, dimension: str) -> list[str]:
     sizes = {name + dimension: abs(value) / scale for name, scale in prefixes.items()}
     fitting = [name for name, size in sizes.items() if LEAST_NUMBER <= size < MOST_NUMBER]
     return sorted(fitting, key=lambda name: (sizes[name] < 1.0, abs(math.log(sizes[name]))))
+
+
+@cache
+def limits_in(within: str) -> tuple[str, str, str]:
+    """Limits and reason of a text as ``"1 mm to 1 km: beams lie between"``."""
+    limits, _, reason = within.partition(": ")
+    least, _, most = limits.partition(" to ")
+    return least, most, reason

@@ -21,7 +21,8 @@ from asperity.reporting.chart import Chart
 from asperity.reporting.figure import write_chart
 from asperity.scenes.bearing_at_rest import tones_group
 from asperity.scenes.bearing_heard import HARMONICS, REACH, envelope_group
-from asperity.scenes.figures.bearing import envelope_spectrum, kurtogram_panel
+from asperity.scenes.figures.bearing import envelope_spectrum
+from asperity.scenes.figures.kurtogram import kurtogram_panel
 from asperity.schema import tree
 from asperity.studies.recorded import Recorded, read_record
 from asperity.studies.tacho import Turned, at_constant_speed, fitting_speed, read_turned

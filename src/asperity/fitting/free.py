@@ -9,11 +9,11 @@ from asperity.arguments import Array, require, shown
 from asperity.case.any_case import AnyCase, CaseKey, entry_of, in_words
 from asperity.case.tables import TableFile, read_levels
 from asperity.errors import InputError
-from asperity.parameters import FROM_PYTHON, Bounded, Either, Key, Quantity, limits_in, outside
+from asperity.parameters import FROM_PYTHON, Bounded, Either, Key, Quantity, outside
 from asperity.scenarios.records import spectrum_levels
 from asperity.spectra import HALF_BAND
 from asperity.studies.axes import Unfit, value_of
-from asperity.units import quantity, unit_in
+from asperity.units import limits_in, quantity, unit_in
 from asperity.written_numbers import rounded
 
 NEPER = 20.0 / math.log(10.0)

@@ -5,8 +5,8 @@ import re
 from collections.abc import Iterator, Mapping
 
 from asperity.case.any_case import AnyCase
-from asperity.parameters import Quantity, limits_in
-from asperity.units import quantity, written
+from asperity.parameters import Quantity
+from asperity.units import limits_in, quantity, written
 from asperity.written_numbers import rounded
 
 OF_ANYTHING = {
