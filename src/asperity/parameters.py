@@ -563,12 +563,16 @@ def optional_parameter(*told: Any, **options: Any) -> Any:
     return parameter(*told, default=None, **options)
 
 
-@cache
 def keys_of(model: Any, otherwise: str) -> Mapping[str, Key]:
     """Keys of the parameters that a physical dataclass declares.
 
     `otherwise` is what holds without them, where they do not say it themselves.
     """
+    return _keys_of(model, otherwise)
+
+
+@cache
+def _keys_of(model: Any, otherwise: str) -> Mapping[str, Key]:
     declared = {each.name: each.metadata["key"] for each in fields(model) if "key" in each.metadata}
     return {name: replace(key, otherwise=key.otherwise or otherwise) for name, key in declared.items()}
 
