@@ -168,12 +168,11 @@ class RollerBearing(RollingBearing):
         otherwise="the rib is rigid",
         goes_with="taper",
     )
-    rib_height: float | None = parameter(
-        _LENGTH,
+    rib_height: float | None = optional_parameter(
+        LENGTH,
         "1 mm",
         "how far above the inner raceway the rib touches the end of a tapered roller",
         "10 um to 0.1 m: ribs lie between",
-        default=None,
         otherwise="friction on the rib is not looked at",
         goes_with="taper",
     )
