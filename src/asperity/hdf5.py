@@ -50,7 +50,7 @@ def _broken_links_named(path: FilePath, source: str) -> Iterator[None]:
 
     try:
         yield
-    except (KeyError, RuntimeError):
+    except (AttributeError, KeyError, RuntimeError):
         with h5py.File(path, "r") as file:
             links = (name for name in file if file.get(name, getlink=True).__class__ is h5py.SoftLink)
             broken = [name for name in links if _leads_nowhere(file, name)]

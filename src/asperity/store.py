@@ -15,7 +15,7 @@ from contextlib import AbstractContextManager, suppress
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 
@@ -133,7 +133,7 @@ class Store:
             raise TypeError("arrays of objects cannot be stored")
         path = self.path(key)
         try:
-            save = partial(np.savez, **contents)  # type: ignore[arg-type]
+            save = partial(_write_archive, contents)
             atomic_write(path, save, sealed=True, lasting=False)  # what is damaged counts as missing
         except ComputationError as error:
             with _HOLDING:  # threads put at once, and one of them warns
@@ -178,6 +178,14 @@ class Store:
     def size(self) -> int:
         """Total size of the files, in bytes."""
         return sum(path.stat().st_size for path in self.files())
+
+
+def _write_archive(contents: Mapping[str, NDArray[Any]], file: BinaryIO) -> None:
+    """Write arrays as `numpy.savez` does, and leave nothing open where the disk is full."""
+    with zipfile.ZipFile(file, "w") as archive:
+        for name, value in contents.items():
+            with archive.open(f"{name}.npy", "w", force_zip64=True) as member:
+                np.lib.format.write_array(member, value, allow_pickle=False)
 
 
 def _is_kept(path: Path) -> bool:

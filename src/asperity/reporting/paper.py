@@ -164,7 +164,9 @@ def _draw_second(axes: Axes, way: str, second: chart.Second, log: bool, ends: En
 
     both = (there, back)
     x = way == "x"
-    opposite: Any = axes.secondary_xaxis("top", both) if x else axes.secondary_yaxis("right", both)
+    opposite: Any = (
+        axes.secondary_xaxis("top", functions=both) if x else axes.secondary_yaxis("right", functions=both)
+    )
     side = opposite.xaxis if x else opposite.yaxis
     side.set_label_text(second.label)
     if log:

@@ -1,5 +1,7 @@
 """Members of a study that differ by chance alone: their mean, and the band in which one more lies."""
 
+from typing import TypeVar
+
 import numpy as np
 import xarray
 from scipy import stats
@@ -8,6 +10,7 @@ from asperity.arguments import real, require
 from asperity.errors import InputError
 from asperity.results import variable
 
+Values = TypeVar("Values", xarray.DataArray, xarray.Dataset)
 SEED = "seed"
 """The key by which members differ by chance alone."""
 SHARE = 0.8
@@ -101,7 +104,13 @@ def student(values: xarray.DataArray, share: float) -> tuple[xarray.DataArray, x
     count = values.notnull().sum(SEED)
     n = count.where(count >= 2)
     reach = stats.t.ppf(0.5 * (1.0 + share), n - 1)
-    return values.std(SEED, ddof=1) * reach / np.sqrt(n), count
+    return _deviation(values, n) * reach / np.sqrt(n), count
+
+
+def _deviation(values: Values, count: Values) -> Values:
+    """Standard deviation over the seeds (n − 1), of a count that is NaN where that is below two."""
+    squares: Values = ((values - values.mean(SEED)) ** 2).sum(SEED)
+    return (squares / (count - 1)) ** 0.5
 
 
 def mean_and_scatter(table: xarray.Dataset) -> tuple[xarray.Dataset, xarray.Dataset]:
@@ -119,5 +128,6 @@ def mean_and_scatter(table: xarray.Dataset) -> tuple[xarray.Dataset, xarray.Data
         standard deviation of a member (n − 1), NaN of fewer than two. Levels are averaged as they are, in dB.
     """
     held = table[[name for name, v in table.data_vars.items() if SEED in v.dims and v.dtype.kind == "f"]]
-    scatter = held.std(SEED, ddof=1, keep_attrs=True).where(held.count(SEED) >= 2)
+    count = held.count(SEED)
+    scatter = _deviation(held, count.where(count >= 2))
     return held.mean(SEED, keep_attrs=True).assign_attrs(members=table.sizes[SEED]), scatter
