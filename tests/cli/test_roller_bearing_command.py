@@ -88,6 +88,19 @@ def test_a_tilted_ring_is_that_of_the_static_solution(tmp_path):
     assert "tilt: received a tilt without a load; allowed: a load beside it, as --radial '1 kN'" in refused
 
 
+def test_a_shaft_that_gives_way_is_told_of_a_file(tmp_path):
+    """By the tilt and the moment at rest, in words, on the sheet; a table has none."""
+    keys = 'name = "NU205"\nradial = "2 kN"\ntilt = "1 mrad"\ntilt_stiffness = "500 N m"\n'
+    (path := tmp_path / "own.toml").write_text(keys)
+    found = RollerBearing.named("NU205").loaded(2000.0, tilt=1e-3, tilt_stiffness=500.0)
+    told = f"{1e3 * found.tilt:.4g} mrad by a moment of {found.moment[:, 0].mean():.4g} N m."
+    assert f"held at a tilt of {told}" in " ".join(call("bearing", str(path)).stdout.split())
+    call("bearing", str(path), "--sheet", str(sheet := tmp_path / "sheet.html"))
+    assert f"tilted by {1e3 * found.tilt:.4g} mrad," in " ".join(sheet.read_text(encoding="utf-8").split())
+    path.write_text(keys.replace('tilt = "1 mrad"\n', ""))
+    assert "--table: received a tilt" in call("bearing", str(path), "--table", "k.csv", code=2).stderr
+
+
 def test_films_are_those_of_lines():
     assert "Films of oil" in call(*LOADED, "--oil", "ISO VG 68").stdout
 

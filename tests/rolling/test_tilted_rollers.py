@@ -283,6 +283,28 @@ def test_a_case_tells_tilt_moment_and_time():
     assert beyond == pytest.approx(2.4 * level_beyond)
 
 
+GIVING = {"tilt": "1 mrad", "tilt_stiffness": "500 N m"}
+
+
+def test_a_case_tilts_as_far_as_its_shaft_gives_way():
+    """At rest, mean over the cage; a run is that of this tilt."""
+    case = as_case(CASE | GIVING)
+    rollers = case.static
+    tilts, moments = rollers.displacement[:, 3], rollers.moment[:, 0]
+    np.testing.assert_allclose(moments, 500.0 * (1e-3 - tilts), rtol=1e-6)
+    tilt = float(tilts.mean())
+    assert case.tilts == {"tilt": tilt, "rotating_tilt": 0.0}
+    told = dict(expected(prepare_bearing(case))[0])["tilt of the inner ring"]
+    given = f"{1e3 * tilt:.4g} mrad of 1 mrad, as the shaft gives way"
+    assert told == f"{given}; {moments.mean():.3g} N m hold it in the plane of the load"
+    runs = []
+    for each in (GIVING, {"tilt": f"{tilt!r} rad"}):
+        short = as_case(CASE | {"duration": "10 ms", "settling": "1 ms"} | each)
+        (run,) = compute_bearing(prepare_bearing(short), lambda *_: None).rolled.values()
+        runs.append(run.inner_force)
+    np.testing.assert_allclose(*runs, atol=1e-6)
+
+
 def test_a_case_runs_tilted():
     """Its inner ring lies as much less deep than a level one as at rest, in the mean."""
     run = {"duration": "30 ms", "rotating_tilt": "0 mrad", "outer_raceway": None}
@@ -340,6 +362,11 @@ test_tilts_that_cannot_be_are_refused = refusals(
     ({"tilt": "0.2 rad"}, "tilt: received 0.2 rad; allowed: -0.1 rad to 0.1 rad. Shafts tilt less"),
     ({"tilt": "20 mrad", "rotating_tilt": "90 mrad"}, "rotating_tilt: received 0.11 rad; allowed: below 0.1"),
     ({"tilt": "1 mm"}, "tilt: received '1 mm'"),
+    (
+        {"tilt_stiffness": "1 kN m", "rotating_tilt": "1 mrad"},
+        "tilt_stiffness: received one beside rotating_tilt; allowed: a tilt that stands alone",
+    ),
+    ({"tilt_stiffness": "0 N m"}, "tilt_stiffness: received .0 N m."),
     (
         {"axial": "1 kN", "bearing": TAPER | {"taper": "4 rad"}},
         "bearing.taper: received .4 rad.; allowed: an angle",

@@ -167,7 +167,7 @@ HARMLESS_LARGE = {
     "what it takes is told": "wheel-on-rail:duration",
     "digits that are asked for": "numerics.rtol",
     "nothing times anything": "noise.receiver_offset sideways.wheel_shift",
-    "stiffer is as good as rigid": "beam.support_stiffness",
+    "stiffer is as good as rigid": "beam.support_stiffness tilt_stiffness",
     "they span nine decades": "wear_coefficient",
     "housings of small bearings weigh as much as a machine": "housing.mass",
 }

@@ -201,6 +201,25 @@ def test_a_tilt_presses_the_ends_that_lie_back_where_the_load_points():
     assert found.carrying_length.max() < straight.carrying_length.max() <= NU205.roller_length
 
 
+@pytest.mark.parametrize(("bearing", "axial"), [(NU205, 0.0), (TAPERED, 1200.0)])
+@pytest.mark.parametrize("stiffness", [500.0, 1e5])
+def test_a_shaft_gives_way_to_the_moment_of_rollers(bearing, axial, stiffness):
+    """k (γ₀ − γ) in both planes is the moment of a ring that is held at γ; soft ones stand as without one."""
+    free = np.array([1e-3, 2e-4])
+    held = {"speed": 100.0, "cage_angles": [0.1]}
+    found = bearing.loaded(1500.0, axial, tilt=free, tilt_stiffness=stiffness, **held)
+    tilt = found.displacement[0, 3:]
+    again = bearing.loaded(1500.0, axial, tilt=tilt, **held)
+    np.testing.assert_allclose(again.moment[0], stiffness * (free - tilt), rtol=1e-6)
+    np.testing.assert_allclose(again.inner_slices, found.inner_slices, rtol=1e-6, atol=1e-6)
+    assert found.tilt == tilt[0] < 1e-3
+    soft, loose = (
+        bearing.loaded(1500.0, axial, **each, **held)
+        for each in ({"tilt": free, "tilt_stiffness": 1e-3}, {"moment": [1e-6, 2e-7]})
+    )
+    np.testing.assert_allclose(soft.displacement[0, 3:], loose.displacement[0, 3:], atol=1e-7)
+
+
 def test_the_static_load_rating_is_that_of_iso_76():
     """C₀ = 44 (1 − γ) Z L D in N and mm is 27 kN in catalogues; 4 GPa under Q = 5 C₀/Z."""
     rating = 44.0 * (1.0 - 7.5 / 39.0) * 13 * 7.8 * 7.5
@@ -388,6 +407,8 @@ test_loads_that_cannot_be = refusals(
     ({"radial": -1.0}, "radial load"),
     ({"radial": 1.0, "axial": 1.0}, "axial load: received 1 N; allowed: 0 N where contact_angle is 0"),
     ({"radial": 1.0, "tilt": 0.0, "moment": 0.0}, "load: received both tilt and moment"),
+    ({"radial": 1.0, "moment": 0.0, "tilt_stiffness": 1.0}, "load: received both tilt_stiffness and moment"),
+    ({"radial": 1.0, "tilt_stiffness": -1.0}, "tilt_stiffness (N m/rad): received -1.0"),
     (
         {"radial": 1.0, "tilt": 1.0},
         r"tilt \(rad\): received 1.0; allowed: a number, or two.*below 0.1 rad.*unit",

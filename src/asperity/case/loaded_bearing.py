@@ -12,8 +12,10 @@ from asperity.case.lubricant import LubricantKeys, RollerLubricantKeys
 from asperity.case.roller_bearing import (
     FRICTION,
     TILT,
+    TILT_STIFFNESS,
     RollerBearingUnderLoad,
     RollerGeometry,
+    held_at,
     rubbing_nowhere,
 )
 from asperity.case.speed import span_of
@@ -76,13 +78,14 @@ class RollerBearingKeys(LoadKeys, RollerGeometry):
     """A roller bearing and what it carries."""
 
     tilt: float = TILT
+    tilt_stiffness: float | None = TILT_STIFFNESS
     friction: float | None = FRICTION
     lubricant: RollerLubricantKeys = section(RollerLubricantKeys, "the oil: how thick its films are")
 
     @property
     def held(self) -> dict[str, Any]:
         """How the inner ring is held beside its load."""
-        return {"tilt": self.tilt}
+        return held_at(self.tilt, self.tilt_stiffness)
 
     def problems(self) -> Iterator[InputError]:
         """What a bearing lacks, or friction of one in which nothing slides."""
@@ -116,7 +119,8 @@ def _of_case(keys: dict[str, Any], source: str, options: Mapping[str, Any]) -> d
         name: f"{float(getattr(case, name))!r} {unit}" for name, unit in CARRIED.items()
     }
     carried["contact_damping"] = f"{0.5 * sum(case.dampings)!r} N s/m"
-    carried |= {name: f"{value!r} rad" for name, value in case.held.items()}
+    units = {"tilt": "rad", "tilt_stiffness": "N m"}
+    carried |= {name: f"{value!r} {units[name]}" for name, value in case.held.items()}
     if on_rollers and case.friction is not None:
         carried["friction"] = case.friction
     return dict(keys.get("bearing", {})) | carried | {"lubricant": keys.get("lubricant", {})}
@@ -125,7 +129,7 @@ def _of_case(keys: dict[str, Any], source: str, options: Mapping[str, Any]) -> d
 def bearing_of_run(text: str, source: str) -> LoadKeys:
     """Bearing, load and speed of a run by the text of its case, whose files need no longer be there."""
     keys = toml.read_toml(text, "case", source)
-    names = "kind", "bearing", "lubricant", "tilt", "rotating_tilt", "friction", *CARRIED
+    names = "kind", "bearing", "lubricant", "tilt", "tilt_stiffness", "rotating_tilt", "friction", *CARRIED
     own = {name: keys[name] for name in names if name in keys}
     return _read(_of_case(own, source, {}), source)
 

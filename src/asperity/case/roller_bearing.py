@@ -14,7 +14,7 @@ from asperity.case.named_bearing import NamedBearing
 from asperity.case.ready_lists import IN_ROLLER_BEARINGS, NamedChanges, listed_changes
 from asperity.errors import InputError
 from asperity.laws import LawSpec, Need, spec_of
-from asperity.parameters import ANGLE, DURATION, Choice, Flag, ListOf, key, keys_of, optional
+from asperity.parameters import ANGLE, DURATION, Choice, Flag, ListOf, Quantity, key, keys_of, optional
 from asperity.rolling.resolution import steps_per_resonance
 from asperity.structures.roller_bearing import ROLLER_BEARINGS, STEEPEST_TILT, RollerBearing
 from asperity.written_numbers import rounded
@@ -28,6 +28,13 @@ TILT = key(
     "0 mrad",
     "tilt of the inner ring in the plane of the radial load",
     "-0.1 rad to 0.1 rad: shafts tilt less",
+)
+TILT_STIFFNESS = optional(
+    Quantity("N m", above=0),
+    "2 kN m",
+    "stiffness by which the shaft holds the inner ring at tilt, against the moment of the rollers",
+    "it stays at tilt",
+    "10 N m to 1 GN m: softer holds nothing, stiffer gives way by nothing",
 )
 FRICTION: Any = replace(
     BearingUnderLoad.keys["friction"],
@@ -48,6 +55,11 @@ OF_CROWNING = {
     "straight middle of the crowning": "crowning_straight",
 }
 """Keys of what a crowning may be refused for."""
+
+
+def held_at(tilt: float, stiffness: float | None) -> dict[str, Any]:
+    """How the inner ring is held, as `RollerBearing.loaded` takes it, where a shaft does so."""
+    return {"tilt": tilt} if stiffness is None else {"tilt": tilt, "tilt_stiffness": stiffness}
 
 
 def rubbing_nowhere(friction: float | None, of: RollerBearing, within: str = "") -> Iterator[InputError]:
@@ -109,6 +121,7 @@ class RollerBearingUnderLoad(BearingUnderLoad):
 
     kind: str = key(Choice(("roller-bearing",)), "roller-bearing", "what rolls")
     tilt: float = TILT
+    tilt_stiffness: float | None = TILT_STIFFNESS
     rotating_tilt: float = replace(
         TILT, meaning="tilt that turns with the ring that turns, as of a bent shaft"
     )
@@ -151,13 +164,17 @@ class RollerBearingUnderLoad(BearingUnderLoad):
     @property
     def tilts(self) -> dict[str, float]:
         """Tilts of the inner ring, rad, by the names of their keys, where there are any."""
-        found = {"tilt": self.tilt, "rotating_tilt": self.rotating_tilt}
+        standing = self.tilt
+        if self.tilt_stiffness is not None:  # as far as the shaft gives way at rest, mean over the cage
+            standing = self.static.tilt
+        found = {"tilt": standing, "rotating_tilt": self.rotating_tilt}
         return found if any(found.values()) else {}
 
     @property
-    def held(self) -> dict[str, float]:
+    def held(self) -> dict[str, Any]:
         """How far the inner ring is tilted at most: where one that turns adds to one that stands."""
-        return {"tilt": math.copysign(abs(self.tilt) + abs(self.rotating_tilt), self.tilt)}
+        tilt = math.copysign(abs(self.tilt) + abs(self.rotating_tilt), self.tilt)
+        return held_at(tilt, self.tilt_stiffness)
 
     def resolving(self, resonance: float) -> float:
         """Time steps in a second, 1/s, that a resonance of contacts, Hz, takes: fewer beyond the record."""
@@ -182,6 +199,10 @@ class RollerBearingUnderLoad(BearingUnderLoad):
             remedy = "Rollers slide along such raceways, and ribs are not in it. Give a contact_angle."
             allowed = "0 N where bearing.contact_angle is 0"
             yield InputError("axial", f"{rounded(self.axial, 4)} N", allowed, remedy)
+            return
+        if self.tilt_stiffness is not None and self.rotating_tilt:
+            remedy = "It is held against what stands; leave one of them out."
+            yield InputError("tilt_stiffness", "one beside rotating_tilt", "a tilt that stands alone", remedy)
             return
         if abs(self.held["tilt"]) >= STEEPEST_TILT:
             key = "tilt" if abs(self.tilt) >= abs(self.rotating_tilt) else "rotating_tilt"

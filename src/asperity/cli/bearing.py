@@ -216,7 +216,7 @@ def _carried(keys: LoadKeys, picture: Path | None) -> dict[str, Any]:
 
 def _tilted(found: LoadedRollers) -> str:
     """How the inner ring is held against tilt, and rollers by a rib, in words."""
-    tilt = float(found.displacement[0, 3])
+    tilt = found.tilt
     told = "rings are held against tilt"
     if tilt:
         moment = rounded(float(found.moment[:, 0].mean()), 4)

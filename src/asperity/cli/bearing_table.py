@@ -36,7 +36,7 @@ def write_table(
     given = [name for name in SWEPT if options.get(name) is not None]
     several = {name: _values(name, options[name], SWEPT[name]) for name in given}
     keys = read_bearing(source, {**options, **dict.fromkeys(given)})
-    if keys.held.get("tilt"):
+    if any(keys.held.values()):
         raise InputError("--table", "a tilt with it", "a ring that is held without tilt")
     over = {name: several.get(name, np.array([getattr(keys, name) or 0.0])) for name in SWEPT}
     count = int(np.prod([each.size for each in over.values()]))

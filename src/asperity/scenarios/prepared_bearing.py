@@ -255,6 +255,8 @@ def _tilt_in_words(case: BearingUnderLoad) -> str:
     told = [rounded(1e3 * each, 4) + " mrad" for each in case.tilts.values()]
     turning = f"{told[0]} and {told[1]} that turns" if case.tilts["rotating_tilt"] else told[0]
     rollers: Any = case.static
+    if case.held.get("tilt_stiffness"):
+        turning += f" of {rounded(1e3 * case.held['tilt'], 4)} mrad, as the shaft gives way"
     return f"{turning}; {rounded(rollers.moment[:, 0].mean())} N m hold it in the plane of the load"
 
 

@@ -400,6 +400,7 @@ class RollerBearing(RollingBearing):
         *,
         tilt: ArrayLike | None = None,
         moment: ArrayLike | None = None,
+        tilt_stiffness: float | None = None,
         speed: float = 0.0,
         cage_angles: ArrayLike | None = None,
     ) -> LoadedRollers:
@@ -415,6 +416,9 @@ class RollerBearing(RollingBearing):
             0 by default; the moments are found.
         moment : float or (float, float), optional
             On the inner ring in these planes, N m, instead: the tilt is found.
+        tilt_stiffness : float, optional
+            By which a shaft holds the inner ring at `tilt`, N m/rad: it gives way to the moment of the
+            rollers, and the tilt is found. Rigid by default.
         speed : float
             Turns per second, for the centrifugal force on the rollers.
         cage_angles : array_like (m,), optional
@@ -440,8 +444,9 @@ class RollerBearing(RollingBearing):
         from asperity.structures.roller_statics import roller_load_distribution
 
         return roller_load_distribution(
-            self, radial, axial, tilt=tilt, moment=moment, speed=speed, cage_angles=cage_angles
-        )
+            self, radial, axial, tilt=tilt, moment=moment, tilt_stiffness=tilt_stiffness, speed=speed,
+            cage_angles=cage_angles,
+        )  # fmt: skip
 
 
 AnyBearing = BallBearing | RollerBearing

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, finite_array, not_negative, require
+from asperity.arguments import Array, ArrayLike, finite_array, not_negative, positive, require
 from asperity.contact.slices import EXPONENT, SlicedContact
 from asperity.errors import ComputationError, Grade, InputError, OutOfRangeWarning, percent
 from asperity.structures.bearing_statics import LoadedRow, angles_of_cage, doubt_pressure
@@ -119,6 +119,11 @@ class LoadedRollers(LoadedRow):
         return np.einsum("mz,mzi,mzj->mij", taken, normal, normal)
 
     @property
+    def tilt(self) -> float:
+        """Tilt of the inner ring in the plane of the radial load, mean over the cage, rad."""
+        return float(self.displacement[:, 3].mean())
+
+    @property
     def rib_force(self) -> Array:
         """Forces of the rib on tapered rollers along their axis (m, Z), N."""
         of = self.bearing
@@ -183,6 +188,7 @@ def roller_load_distribution(
     *,
     tilt: ArrayLike | None,
     moment: ArrayLike | None,
+    tilt_stiffness: float | None,
     speed: float,
     cage_angles: ArrayLike | None,
 ) -> LoadedRollers:
@@ -192,6 +198,9 @@ def roller_load_distribution(
     speed = not_negative("speed (1/s)", speed)
     both = tilt is not None and moment is not None
     require(not both, "load", "both tilt and moment", "one of them", "Remove one.")
+    if tilt_stiffness is not None:
+        tilt_stiffness = positive("tilt_stiffness (N m/rad)", tilt_stiffness)
+        require(moment is None, "load", "both tilt_stiffness and moment", "one of them", "Remove one.")
     tilted = _both_planes("tilt (rad)", tilt, largest=STEEPEST_TILT)
     moments = _both_planes("moment (N m)", moment)
     carried = bearing.contact_angle > 0.0 or axial == 0.0
@@ -206,7 +215,7 @@ def roller_load_distribution(
     load = np.array([radial, 0.0, axial, *moments])
     prescribed = tilted if moment is None else None
     try:
-        found = _solved(bearing, load, prescribed, speed, angles)
+        found = _solved(bearing, load, prescribed, speed, angles, tilt_stiffness or math.inf)
     except ComputationError as error:
         received = f"{rounded(radial, 4)} N radial and {rounded(axial, 4)} N axial: {error.what}"
         remedy = f"Try {error.remedy}."
@@ -306,9 +315,17 @@ class _Rollers:
 
 
 def _solved(
-    bearing: RollerBearing, load: Array, tilt: Array | None, speed: float, angles: Array
+    bearing: RollerBearing,
+    load: Array,
+    tilt: Array | None,
+    speed: float,
+    angles: Array,
+    tilt_stiffness: float = math.inf,
 ) -> LoadedRollers:
-    """The inner ring in balance at each angle of the cage; tilted as it is told, or as moments tilt it."""
+    """The inner ring in balance at each angle of the cage; tilted as it is told, or as moments tilt it.
+
+    A shaft that gives way has a tilt where no moment acts, and a stiffness against another one, N m/rad.
+    """
     azimuth = bearing.azimuths(angles)
     moved = _followed(bearing, azimuth)
     lift = bearing.centrifugal_force(speed) * bearing.flung_outwards(bearing.contact_angle)
@@ -323,25 +340,35 @@ def _solved(
     moved = moved / levers  # tilts of the ring as ways at half a length of a roller
     rest = np.array([-0.5 * bearing.clearance * math.cos(bearing.contact_angle), 0.0])
     start = np.zeros((len(angles), 5))
+    held = tilt is not None and math.isinf(tilt_stiffness)
+    spring, untilted = 0.0, np.zeros(2)
     if tilt is not None:
-        start[:, MOMENTS] = tilt * levers[MOMENTS]
-        rest = rest + np.einsum("mzik,mk->mzi", moved, start)
-        scale = max(scale, float(rollers.together(rest)[1].max()))
+        start[:, MOMENTS] = untilted = tilt * levers[MOMENTS]
+        tilted = rest + np.einsum("mzik,mk->mzi", moved, start)
+        scale = max(scale, float(rollers.together(tilted)[1].max()))
+        if held:
+            rest = tilted
+        else:
+            spring = tilt_stiffness / rollers.lever**2
     pressed = 2.0 * inner.approach(5.0 * load[FORCES].max() / bearing.rollers)
     start[:, 0] = (max(0.5 * bearing.clearance, 0.0) + pressed) * (load[0] > 0.0)
     sine = math.sin(bearing.contact_angle)
     if sine:
         start[:, 2] = (max(0.5 * bearing.clearance, 0.0) + pressed) / sine
-    free = [0, 1] + [2] * bool(sine) + [3, 4] * (tilt is None)
+    free = [0, 1] + [2] * bool(sine) + [3, 4] * (not held)
+    sprung = spring * np.diag([each in (3, 4) for each in free])
+    unloaded = np.array([0.0, 0.0, 0.0, *untilted])[free]
     force = load / levers
     force[2] -= bearing.flung_axially(lift)
 
     def energy_of(ring: Array) -> tuple[Array, Array, Array]:
         stretch = rest + np.einsum("mzik,mk->mzi", moved[..., free], ring)
         energy, pulled, stiffness, _ = rollers.together(stretch)
-        gradient = np.einsum("mzik,mzi->mk", moved[..., free], pulled) - force[free]
-        hessian = np.einsum("mzik,mzij,mzjl->mkl", moved[..., free], stiffness, moved[..., free])
-        return energy.sum(-1) - ring @ force[free], gradient, hessian
+        turned = (ring - unloaded) @ sprung
+        gradient = np.einsum("mzik,mzi->mk", moved[..., free], pulled) - force[free] + turned
+        hessian = np.einsum("mzik,mzij,mzjl->mkl", moved[..., free], stiffness, moved[..., free]) + sprung
+        stored = 0.5 * (turned * (ring - unloaded)).sum(-1)
+        return energy.sum(-1) + stored - ring @ force[free], gradient, hessian
 
     ring, imbalance = least_energy(energy_of, start[:, free], max(scale, lift), "balance of the inner ring")
     stretch = rest + np.einsum("mzik,mk->mzi", moved[..., free], ring)
