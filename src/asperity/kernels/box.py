@@ -101,6 +101,20 @@ def paste(b: Box, outer: Box, row: int, column: int) -> None:
             outer.pressure[(row + i) * outer.pitch + column + j] = b.pressure[i * b.pitch + j]
 
 
+@compiled(**INNER, **REASSOCIATE)
+def _overlaps(row: NDArray, approach: float, lowest: NDArray) -> float:
+    """Count gaps of a row below an approach, m, and lower to them the lowest of each column.
+
+    Of a number that is summed the compiler makes vectors, where it would not of a least one.
+    """
+    count = 0.0
+    for j in range(len(row)):
+        g = row[j]
+        lowest[j] = min(lowest[j], g)
+        count += 1.0 if g < approach else 0.0
+    return count
+
+
 BALL = 4.0 / 3.0 / math.sqrt(math.pi / 2.0)
 """Makes the estimate of the approach exact for a ball: Hertz's force over √A × (mean overlap on A)."""
 
@@ -116,19 +130,15 @@ def overlap_box(gap: NDArray, approach: float, lowest: NDArray) -> tuple[float, 
     nx, ny = gap.shape
     for j in range(ny):
         lowest[j] = np.inf
-    smallest = np.inf
     first = nx
     end = 0
     for i in range(nx):
-        row = np.inf
-        for j in range(ny):
-            g = gap[i, j]
-            row = min(row, g)
-            lowest[j] = min(lowest[j], g)
-        smallest = min(smallest, row)
-        if row < approach:
+        if _overlaps(gap[i], approach, lowest) > 0.0:
             first = min(first, i)
             end = i + 1
+    smallest = np.inf
+    for j in range(ny):
+        smallest = min(smallest, lowest[j])
     if end == 0:
         return approach - smallest, 0, 0, 0, 0
     left = 0

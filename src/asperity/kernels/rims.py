@@ -172,6 +172,8 @@ def remaining_gap(ratio: float, slant: float) -> tuple[float, float, float]:
 
 CHUNK = 64
 """Cells at rims that are computed in one go, a power of two."""
+LANES = 8
+"""Cells of a vector, at most: a last one is filled with cells that nobody asks for."""
 P, X, Y, UNMET, GAP, OWN, WEIGHT, ALONE, MASKED = range(9)
 """What is known of a cell at a rim, one number after the other.
 
@@ -338,7 +340,7 @@ def set_rims(b: Box, rims: Rims | None, level: float, stiffness: float) -> None:
             for i in range(count):
                 _look(b, rims, first + i, c, i)
                 c[UNMET * CHUNK + i] = b.residual[rims.cell[first + i]] - level
-            _compute(c, count, x_share, y_share, stiffness)
+            _compute(c, (count + LANES - 1) // LANES * LANES, x_share, y_share, stiffness)
             for i in range(count):
                 b.residual[rims.cell[first + i]] -= c[GAP * CHUNK + i]
 
