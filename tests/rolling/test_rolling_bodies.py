@@ -8,6 +8,7 @@ from asperity import Beam, ModalStructure, material
 from asperity.errors import InputError
 from asperity.kernels.pointforce import evaluate_all
 from asperity.laws import HertzLaw, Linear, Printed
+from asperity.laws.layout import force
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.texture import StateTexture
 from asperity.rolling import stepper, steps
@@ -131,6 +132,16 @@ def test_a_force_that_changes_evenly_is_expected_to_its_tolerance():
     run = rolled(None, law, start=0.03, duration=0.1, settling=0.01, time_step=1e-5)
     assert np.ptp(run.contact_force) > 1e-3 * LOAD
     assert run.evaluations < 1.1 * 11000
+
+
+@pytest.mark.filterwarnings("ignore::asperity.errors.CoarseSamplingWarning")
+def test_a_force_that_no_other_changes_is_that_of_its_law_at_once():
+    """Of a light ball that bounces, of whose force guesses are far off."""
+    law = HertzLaw(2.4e10, rough(1e-6, 1e-5, 0.05, 40000))
+    run = rolled(None, law, Body.rigid(5e-3, LOAD), start=0.06, duration=0.02, time_step=1e-5)
+    expected = force(law, run.positions, run.relative_displacement)
+    assert np.ptp(expected) > LOAD
+    assert_allclose(run.contact_force, expected, rtol=1e-9, atol=1e-9 * LOAD)
 
 
 class Interrupted(Stepped):

@@ -54,6 +54,17 @@ def test_smooth_raceway_is_solved_once_and_is_hertz():
     assert_allclose(force(law["table"], 0.0, APPROACH), finer, rtol=1e-3)
 
 
+def test_areal_textures_have_one_state_where_all_are_alike():
+    smooth = laws_on(raceway_on(CONTACT, LOAD, 0.2 * MM), "areal")["areal"]
+    assert smooth.prepare([0.0]).values.tolist() == [[0.0]]
+    assert force(smooth, [0.0], APPROACH) == pytest.approx(LOAD)
+    on = OnRaceway(CONTACT, rough(40 * NM), LOAD)
+    assert len(on.loaded.approaches) > 8
+    found = on.build("areal").prepare([0.0, 0.1 * MM])
+    assert np.array_equal(found.states, on.loaded.approaches)
+    assert np.ptp(found.values, axis=1).min() > 1 * NM
+
+
 def test_stiffness_on_a_smooth_raceway_is_that_of_hertz_without_steps():
     """Whole cells miss it by half a per cent, as rows of cells enter."""
     surface = raceway_on(CONTACT, LOAD, 0.2 * MM)
