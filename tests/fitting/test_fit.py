@@ -10,7 +10,7 @@ import asperity
 from asperity import observables
 from asperity.fitting import determined, running
 from asperity.fitting.determined import open_direction, spread_of
-from asperity.fitting.fitted import Undetermined
+from asperity.fitting.fitted import Estimate, Undetermined
 from asperity.fitting.free import free_key
 from asperity.fitting.tried import TriedCase
 from asperity.observables.observable import Measured, Observable
@@ -296,3 +296,11 @@ test_what_was_measured_is_checked = refusals(
     (([1.0], [1.0], 0.0), "uncertainty of the x: received 0.0; allowed: dB, greater than 0"),
     of=lambda given: Measured("x", *given),
 )
+
+
+def test_values_before_and_intervals_stand_in_words(track):
+    free = replace(free_key(track, "track.pad_stiffness"), before=3e8, given=True)
+    found = Estimate(free, 4e8, (3.5e8, 4.5e8), "")
+    assert (found.before_in_words, found.interval_in_words) == ("300 MN/m", "350 MN/m to 450 MN/m")
+    found = Estimate(replace(free, given=False), 4e8, None, "least")
+    assert (found.before_in_words, found.interval_in_words) == ("–", "on its limit")

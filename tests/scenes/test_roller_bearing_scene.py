@@ -54,6 +54,16 @@ def test_waves_are_felt_as_under_a_flat_punch_of_the_half_width(order):
     assert np.ptp(wider) == pytest.approx(2e-7 * abs(j0(2.0 * order / RADIUS * half_width)), rel=1e-3)
 
 
+@pytest.mark.parametrize(("length", "lines"), [(3e-3, 1), (0.35e-3, 5)])
+def test_slices_have_as_many_lines_as_a_fault_asks_for(length, lines):
+    """Cells of an eighth of the fault: slices of 8/41 mm are cut into the fewest of them, an odd number."""
+    spall = Fault("spall", length=length, width=length, depth=5e-6)
+    surface = raceway_on(STRAIGHT, LOAD, RADIUS, faults=[spall])
+    assert 8e-3 / 41 / lines <= length / 8.0
+    assert surface.heights.shape[1] == 41 * lines
+    assert surface.spacing[1] == pytest.approx(8e-3 / 41 / lines)
+
+
 def test_of_a_wave_few_states_are_laid_out_and_what_lies_between_them_is_not_missed():
     """J₀(kb) is nearly straight over the approach: b² grows with the load, that as δ^(10/9)."""
     texture = AroundTexture(waves=(12,), amplitudes=(1e-7,))

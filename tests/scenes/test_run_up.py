@@ -90,3 +90,14 @@ def test_the_run_up_is_laid_on_speeds_and_drawn(tree):
     assert "at the fastest, 4500 1/min" in drawn["envelope_spectrum"].caption
     assert "over angle, where lines are narrow" in drawn["envelope_spectrum"].caption
     assert next(iter(drawn["run_up_map"].columns)).startswith("run_up_frequency")
+
+
+@pytest.mark.parametrize("element", ["ball", "roller"])
+def test_orders_have_the_name_of_what_rolls(tree, element):
+    told = tree.copy()
+    told["bearing"].attrs[bearing.ELEMENT.name] = element
+    drawn = {each.name: each for each in figures_of(told)}
+    for name in ("order_spectrum", "run_up_map"):
+        labels = [mark.label for panel in drawn[name].chart.panels for mark in panel.marks]
+        parts = {label.partition(each)[0] for label in labels for each in (":", ",") if each in label}
+        assert {"outer raceway", "inner raceway", f"{element}s"} <= parts
