@@ -123,14 +123,20 @@ def test_half_as_long_a_run_up_on_a_rail_is_twice_as_near_constant_speed(kept):
     np.testing.assert_allclose(rising[0], constant[0], atol=0.2)
 
 
-@pytest.mark.parametrize(("scattered", "off"), [(True, 1e-6), (False, 1e-4)])
-def test_a_speed_that_hardly_changes_on_a_rail_is_a_constant_one(kept, scattered, off):
-    """Poles are fitted to both of its kernels, each within 5e-4: by a fifth of that forces may differ."""
+@pytest.mark.parametrize(
+    ("scattered", "places", "off"), [(True, [0.0, 2.5], 1e-6), (False, [0.0], 1e-4)]
+)
+def test_a_speed_that_hardly_changes_on_a_rail_is_a_constant_one(kept, scattered, places, off):
+    """Poles are fitted to both of its kernels, each within 5e-4: by a fifth of that forces may differ.
+
+    How wheels feel each other by poles while the speed changes is seen by superposition.
+    """
     texture, forces = roughness(0.6), []
     for speed in (20.0, SpeedCourse([0.0, 0.1], [20.0, 20.0 * (1.0 + 1e-9)])):
-        rail = rail_at(TRACK, speed, STEP, [0.0, 2.5], scattered=scattered, cache=kept)
-        path = {"start": 0.0, "duration": 0.1, "settling": 0.05, "time_step": STEP, "positions": [0.0, 2.5]}
-        run = roll_bodies(rail, [Body.rigid(MASS, LOAD)] * 2, [linear(texture)] * 2, speed=speed, **path)
+        rail = rail_at(TRACK, speed, STEP, places, scattered=scattered, cache=kept)
+        path = {"start": 0.0, "duration": 0.1, "settling": 0.05, "time_step": STEP, "positions": places}
+        wheels = [Body.rigid(MASS, LOAD)] * len(places)
+        run = roll_bodies(rail, wheels, [linear(texture)] * len(places), speed=speed, **path)
         forces.append(run.contact_force)
     np.testing.assert_allclose(forces[1], forces[0], rtol=off)
 
@@ -187,7 +193,7 @@ def test_a_point_moves_with_the_contact_when_it_is_passed(kernel):
 @pytest.mark.parametrize("course", [([0.0, 0.16], [16.0, 20.0]), ([0.1, 0.16], [20.0, 16.0])])
 def test_a_rail_moves_as_by_superposition_at_fixed_points_while_the_speed_changes(kept, course):
     """Under wheels 2.5 m apart at 25 to 67 m/s²: kernels of constant speeds, beside those of no speed."""
-    speed, places, h = SpeedCourse(*course), np.array([0.0, 2.5]), STEP
+    speed, places, h = SpeedCourse(*course), np.array([0.0, 2.5]), 2.0 * STEP
     rail = rail_at(TRACK, speed, h, places, cache=kept)
     laws = [linear(roughness(1.2))] * 2
     path = {"start": 0.0, "duration": 0.4, "settling": 0.15, "time_step": h, "positions": places}
