@@ -1,5 +1,7 @@
 """Wheels on a track whose speed changes: what results, reports and checks say, and leave out."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -66,6 +68,8 @@ def test_what_is_of_one_speed_is_left_out_and_the_page_stands(tree):
     assert np.isfinite(tree["spectra"]["radiated_power_level_a"].values).any()
     drawn = {each.name: each for each in figures_of(tree)}
     assert "at the fastest, 26.667 m/s" in drawn["out_of_round"].caption
+    numerics = {each["name"]: each["value"] for each in json.loads(tree["scenario"].attrs["numerics"])}
+    assert "at the fastest, 26.667 m/s" in numerics["wheel out of round"]
     case = WheelOnRail(**RUN_UP)
     told = dict(plan(prepare_case(case), Work({}, {}, 0, None)))
     assert "at the fastest, 26.667 m/s" in told["track"]
