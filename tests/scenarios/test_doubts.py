@@ -78,7 +78,13 @@ def test_a_device_on_which_nothing_was_ever_run_is_told(monkeypatch):
         ),
         (BALL | {"surface": BALL["surface"] | {"longest": "0.4 m"}}, "surface.longest = 400 mm: 0.07 m are"),
         (
-            BALL | {"laws": ["linear"], "contact": {}, "ball": {"load": "40 kN"}, "surface": {"spectrum": "iso3095"}},
+            BALL
+            | {
+                "laws": ["linear"],
+                "contact": {},
+                "ball": {"load": "40 kN"},
+                "surface": {"spectrum": "iso3095"},
+            },
             r"ball.load = 40 kN: smooth bodies press with 5\.\d+ GPa, and dents begin",
         ),
         (WHEEL | {"speed": "200 m/s"}, "speed = 720 km/h: no train has run faster than 575 km/h"),

@@ -123,9 +123,7 @@ def test_half_as_long_a_run_up_on_a_rail_is_twice_as_near_constant_speed(kept):
     np.testing.assert_allclose(rising[0], constant[0], atol=0.2)
 
 
-@pytest.mark.parametrize(
-    ("scattered", "places", "off"), [(True, [0.0, 2.5], 1e-6), (False, [0.0], 1e-4)]
-)
+@pytest.mark.parametrize(("scattered", "places", "off"), [(True, [0.0, 2.5], 1e-6), (False, [0.0], 1e-4)])
 def test_a_speed_that_hardly_changes_on_a_rail_is_a_constant_one(kept, scattered, places, off):
     """Poles are fitted to both of its kernels, each within 5e-4: by a fifth of that forces may differ.
 
