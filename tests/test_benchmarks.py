@@ -13,6 +13,7 @@ from asperity.results import save, variable
 from small_cases import COARSE
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
+import bearing_fit_intervals
 import measured_bearings as bearings
 import measured_railway as railway
 from compare_runs import compare, main
@@ -203,3 +204,21 @@ def test_seats_that_move_by_half_have_four_times_the_modal_mass():
     given = {"sleeper_loss_factor": 0.03, "modal_masses": 4.0}
     tracks = railway.tracks_of({"pad_stiffness": 9e8} | given, railway.KINDS[2])
     assert [each.measured_sleeper for each in tracks] == heavier
+
+
+def test_a_grid_of_runs_gives_the_nearest_or_what_lies_between():
+    loads, lines = np.array([50.0, 100.0, 200.0]), np.array([[1.0], [4.0], [4.0]])
+    asked = {
+        smooth: [
+            bearing_fit_intervals.Grid(loads, np.ones(1), lines, smooth).run(load)["envelope"].item()
+            for load in (20.0, 60.0, 50.0 * np.sqrt(2.0), 80.0, 300.0)
+        ]
+        for smooth in (False, True)
+    }
+    assert [asked[False][k] for k in (0, 1, 3, 4)] == [1.0, 1.0, 4.0, 4.0]
+    assert asked[True] == pytest.approx([1.0, 1.0 * 4.0 ** np.log2(1.2), 2.0, 4.0 ** np.log2(1.6), 4.0])
+
+
+def test_coverage_counts_intervals_that_hold_the_load():
+    found = [(100.0, 100.0, (90.0, 110.0)), (100.0, 150.0, (120.0, 200.0)), (100.0, 99.0, None)]
+    assert bearing_fit_intervals.coverage(found).startswith("1 of 3 (33.3 %)")

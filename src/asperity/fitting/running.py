@@ -66,6 +66,8 @@ STARTS_OF_JUMPS = 2
 """The same where runs jump as a value is moved, and rise and fall with it."""
 REACH = float(np.log(10.0))
 """On the scale of the search, how far from the case it then begins: a factor of ten."""
+SCANNED = 0.1
+"""On the scale of the search, from one place to the next at which the only key of such a fit is looked at."""
 RIVAL = 1.05
 """Ratio of root mean squares up to which another minimum meets the data as well."""
 NEAR = 0.1
@@ -237,7 +239,7 @@ def fitted(
     require(len(chosen) < problem.count, "fit", received, "more values than free keys", "Free fewer keys.")
     left_open = list[Undetermined]()
     rough = replace(problem, fine=False)
-    places = starts_within(*_sought(problem), problem.start, count, rough.residuals)
+    places = _starts(problem, count, rough)
     problem, minima = _searched(problem, places, progress)
     problem.held.clear()  # those of runs are found once more, where the search has ended
     contradicted = set[str]()
@@ -266,6 +268,26 @@ def _sought(problem: Problem) -> tuple[Array, Array]:
     return low, high
 
 
+def _starts(problem: Problem, count: int, rough: Problem) -> list[Array]:
+    """Places from which a search begins: the case, and the best of those that are looked at beside."""
+    if scan := _scan(problem):
+        squares = [float(np.sum(rough.residuals(place) ** 2)) for place in scan]
+        best = np.argsort(squares, kind="stable")[: count - 1]
+        return [problem.start, *(scan[number] for number in best)]
+    return starts_within(*_sought(problem), problem.start, count, rough.residuals)
+
+
+def _scan(problem: Problem) -> list[Array]:
+    """Places of the only key where runs jump, one beside the other about the case; else none.
+
+    Sums of squares have several minima there: what data allow is told by all of these places.
+    """
+    if not problem.jumps or len(problem.free) != 1:
+        return []
+    low, high = (float(end[0]) for end in _sought(problem))
+    return list(np.linspace(low, high, round((high - low) / SCANNED) + 1)[:, None])
+
+
 def _with_choices_of_runs(problem: Problem) -> Problem:
     """The same of a case in which what its runs chose stays, whatever is tried; a warning tells it."""
     chosen = replace(problem, free=()).chosen_by_runs()
@@ -282,7 +304,7 @@ def _with_choices_of_runs(problem: Problem) -> Problem:
 def _most_runs(problem: Problem, starts: int) -> int:
     """Runs of a fit from so many starts at most, the one of the case as it is among them."""
     again = RUNS_AGAIN * (1 + (ROUNDS if problem.stated else 0))
-    screened = SCREENED * (starts - 1)
+    screened = len(_scan(problem)) or SCREENED * (starts - 1)
     searched = RUNS * (starts if starts > 1 else 0) + RUNS + again
     held = 2 * len(problem.free) * again  # each key found to be contradicted, then held nevertheless
     chosen = int(any(of.chosen is not None for of in problem.observables))  # then it is run once more
@@ -466,11 +488,21 @@ def _told(
 
 
 def _interval(problem: Problem, bowl: Bowl, number: int, half: float) -> tuple[End, End]:
-    """Ends of the interval of a value; of a band of roughness as slopes have it, as these take many runs."""
+    """Ends of the interval of a value; of a band of roughness as slopes have it, as these take many runs.
+
+    Where runs jump, it reaches beyond each place of the scan that the data allow.
+    """
+    at = float(bowl.place[number])
     if problem.by_run and problem.free[number].band is not None:
-        at = float(bowl.place[number])
         return End(at - half), End(at + half)
-    return bowl.end(number, -half), bowl.end(number, half)
+    low, high = bowl.end(number, -half), bowl.end(number, half)
+    most = float(bowl.left @ bowl.left) + bowl.allowed
+    allowed = [float(each[0]) for each in _scan(problem) if np.sum(problem.residuals(each) ** 2) <= most]
+    if allowed and min(allowed) - 0.5 * SCANNED < low.place:
+        low = End(min(allowed) - 0.5 * SCANNED)
+    if allowed and max(allowed) + 0.5 * SCANNED > high.place:
+        high = End(max(allowed) + 0.5 * SCANNED)
+    return low, high
 
 
 def _rivals(problem: Problem, minima: _Minima, half: Array) -> Iterable[dict[str, float]]:
