@@ -8,7 +8,7 @@ import xarray
 from numpy.testing import assert_allclose
 
 from asperity import WheelOnRail
-from asperity.errors import CaseError, Grade, OutOfRangeWarning
+from asperity.errors import CaseError, Grade, MissingSourceWarning, OutOfRangeWarning
 from asperity.radiation import pass_by, sound_path
 from asperity.radiation.track import SleeperTop
 from asperity.reference import cnossos
@@ -82,7 +82,8 @@ def test_a_check_says_whose_sound_power_is_computed():
     assert found["sound power"] == (
         "of rail, sleepers and wheel; by CNOSSOS-EU for soft pads and a wheel of 920 mm"
     )
-    rigid = dict(planned_track(prepare_case(labelled(wheel={"section": "rigid"}))))["sound power"]
+    with pytest.warns(MissingSourceWarning, match="that of rail and sleepers alone"):
+        rigid = dict(planned_track(prepare_case(labelled(wheel={"section": "rigid"}))))["sound power"]
     assert rigid.startswith("of rail and sleepers: of this wheel it is not known how")
     hard = {"pad_stiffness": 1200e6}
     for laws in (["linear"], ["hertz"]):  # it is told whatever laws are rolled
@@ -235,18 +236,22 @@ PASSED = 1000.0 * 10.0 ** (np.arange(-6, 7) / 10.0)
 KILOHERTZ = 6  # where the A-weighting is zero
 
 
-def passing(**noise):
-    return WheelOnRail(surface={"spectrum": "iso3095"}, noise=noise, speed=50.0)
+BOGIE = {"type": "bogie", "masses": ["4 t"], "springs": ["1.2 MN/m"], "distance": "2.5 m"}
+BOGIE |= {"inertia": "1500 kg m^2"}
 
 
-def passed(rail=100.0, sleepers=90.0, wheel=np.nan, decay=1.0, **noise):
+def passing(wheel=None, **noise):
+    return WheelOnRail(surface={"spectrum": "iso3095"}, wheel=wheel or {}, noise=noise, speed=50.0)
+
+
+def passed(rail=100.0, sleepers=90.0, wheel=np.nan, decay=1.0, rolling=None, **noise):
     """The pass-by of a sound power in the band of 1 kHz only, dB re 1 pW, by one law."""
     level, parts = np.full((4, len(PASSED)), np.nan), np.array([rail, sleepers, wheel])
     level[:, KILOHERTZ] = *parts, summed(parts)
     names = {"law": ["areal"], "radiator": ["rail", "sleepers", "wheel", "total"], "band": PASSED}
     power = (("law", "radiator", "band"), level[None])
     spectra = {"radiated_power_level": power, "band_decay_rate": ("band", np.full(len(PASSED), decay))}
-    return group(pass_by_group(passing(**noise), xarray.Dataset(spectra, names)))
+    return group(pass_by_group(passing(rolling, **noise), xarray.Dataset(spectra, names)))
 
 
 def heard(**keys):
@@ -261,6 +266,14 @@ def sel(power, axles, source_height=0.0):
     """10 lg of W ρc Q/(4 d v) over (20 µPa)² s."""
     distance = np.hypot(7.5, 1.2 - source_height)
     return 10.0 * np.log10(axles * 1e-12 * 10 ** (power / 10) * 413.0 * 2.0 / (4 * distance * 50.0) / 4e-10)
+
+
+def test_power_of_all_axles_of_a_bogie_is_that_of_one_axle_each():
+    """Two that make 3.01 dB more together pass as two of which one was rolled."""
+    twice = summed([0.0, 0.0])
+    one = heard(wheel=95.0, axle_positions=["0 m", "2.5 m"])
+    both = heard(rail=100.0 + twice, sleepers=90.0 + twice, wheel=95.0 + twice, rolling=BOGIE)
+    assert both["sound_exposure_level_a"].values == pytest.approx(one["sound_exposure_level_a"].values)
 
 
 @pytest.mark.parametrize("wheel", [95.0, np.nan])

@@ -118,6 +118,10 @@ def test_motion_over_the_height_is_squared_and_averaged():
     assert SECTION.bottom @ motion == pytest.approx(moved[0])
     assert_allclose(RAIL.mean_squares, SECTION.squares)
     assert_allclose(RAIL.contact_shapes(0.01) @ motion, [0.04, moved[-1]])
+    depth, height = KEEPS.foot_depth, KEEPS.head_height
+    whole = 0.3 + 4.0 * np.linspace(-depth, height, 40001)  # of a section that keeps its form
+    found = motion[:2] @ KEEPS.mean_squares @ motion[:2]
+    assert found == pytest.approx(np.mean(whole**2), rel=1e-4)
 
 
 def test_supports_hold_the_foot():
