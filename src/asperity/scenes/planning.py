@@ -8,7 +8,7 @@ from asperity.scenarios.reducing import STATES
 from asperity.scenarios.scene import PreparedCase
 from asperity.scenes.roundness import planned_roundness
 from asperity.scenes.start_of_record import start_foreseen
-from asperity.scenes.track import planned_track
+from asperity.scenes.track import doubt_sound, planned_track
 from asperity.scenes.validity import foreseen
 from asperity.store import Store
 from asperity.written_numbers import between, count_of, rounded
@@ -20,6 +20,7 @@ def planned_scene(prepared: PreparedCase, progress: Progress) -> Plan:
     choice = law_choice(prepared)
     faults = [] if work.tried is None else foreseen(prepared, work.tried, choice)
     faults += start_foreseen(prepared)
+    doubt_sound(prepared)
     return Plan(plan(prepared, work, choice), work, faults)
 
 

@@ -388,6 +388,12 @@ PASS_BY = Observer(
 """What is heard beside the track."""
 
 
+def doubt_sound(prepared: PreparedCase) -> None:
+    """Warn of a wheel whose sound is not computed, as the run will."""
+    if isinstance(prepared.scene.over, Track) and asks_for_pass_by(prepared.case):
+        noise.warn_of_silence(prepared.case)
+
+
 def planned_track(prepared: PreparedCase) -> list[tuple[str, str]]:
     """Characteristic numbers of a track that is rolled over, in words, and what is known of its sound."""
     case = prepared.case
@@ -416,8 +422,6 @@ def planned_track(prepared: PreparedCase) -> list[tuple[str, str]]:
         frequencies = (
             f"pinned–pinned {rounded(track.pinned_pinned_frequency, 4)} Hz, {passing}, {frequencies}"
         )
-    if asks_for_pass_by(case):
-        noise.warn_of_silence(case)
     points = ", ".join(f"{position:g} m" for position in case.point_positions)
     return [
         ("track", frequencies),
