@@ -104,9 +104,32 @@ def of_a_tuple(a, b, k):
     b[at] = pair[0] - 2.0 * pair[1]
 
 
+def over_ranges(a, b, k):
+    total = 0.0
+    for i in range(-k, k + 1):
+        for j in range(len(a) - 1, 0, -k):
+            total = 0.5 * total + a[i] * a[j]
+    for _ in range(k, k - 3):
+        total += 100.0
+    for i in range(1, 5, k):
+        if i == 3:
+            continue
+        total += i
+    a[0] = total + i
+
+
+def of_rows_of_rows(a, b, k):
+    stacked = b.reshape((2, 2, 3))
+    for i in range(-1, 1):
+        rows = stacked[i]
+        rows[k - 1, -1] += rows.shape[1] * len(rows) + len(rows[1]) + rows.size + stacked[0, 1][k]
+        for j in range(2):
+            rows[0][j] = rows[-1][1 + j] * 2.0
+
+
 FUNCTIONS = [
     from_both_ends, of_a_row, assigned_in_branches, carried_over, until_broken, exchanged, of_another_type,
-    of_a_tuple,
+    of_a_tuple, over_ranges,
 ]  # fmt: skip
 LAID_OUT = {
     "in rows": lambda b: b.copy(),
@@ -128,6 +151,16 @@ def test_a_kernel_computes_what_python_computes(function, layout):
         results.append(np.concatenate([x, y.ravel()]))
     assert not np.array_equal(results[0], np.concatenate([a, LAID_OUT[layout](b).ravel()]))
     np.testing.assert_array_equal(*results)
+
+
+def test_rows_of_rows_are_parts_of_the_whole():
+    results = []
+    for each in (of_rows_of_rows, compiled(_nrt=False)(of_rows_of_rows)):
+        b = np.random.default_rng(2).normal(size=(4, 3))
+        each(b[0].copy(), b, 2)
+        results.append(b)
+    np.testing.assert_array_equal(*results)
+    assert not np.array_equal(results[0], np.random.default_rng(2).normal(size=(4, 3)))
 
 
 def test_numbers_of_all_types_are_read_and_written():
@@ -158,7 +191,7 @@ def lines_of(function, *arguments, **how):
 
 
 @pytest.mark.skipif(options.PLAIN, reason="numba lacks what this needs")
-@pytest.mark.parametrize("function", [from_both_ends, until_broken], ids=lambda each: each.__name__)
+@pytest.mark.parametrize("function", [from_both_ends, carried_over, of_a_row], ids=lambda each: each.__name__)
 def test_intermediate_code_is_half_of_what_numba_writes(function):
     arguments = np.ones(5), np.ones((4, 3)), 2
     own = lines_of(compiled(_nrt=False)(function), *arguments)

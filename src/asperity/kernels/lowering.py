@@ -11,9 +11,10 @@ not documented stands in `NEEDED`.
 
 from collections import Counter
 from collections.abc import Iterable
+from itertools import zip_longest
 from typing import Any
 
-from llvmlite.ir import Constant, Function, IntType, IRBuilder
+from llvmlite.ir import Constant, Function, IntType, IRBuilder, Undefined
 from llvmlite.ir.instructions import (
     CastInstr,
     ExtractValue,
@@ -100,20 +101,42 @@ class LeanLower(Lower):
             super().delvar(name)
 
     def lower_expr(self, resty: Any, expr: Any) -> Any:
-        """Lower an expression; the shape of an array is a part of it."""
+        """Lower an expression; shape and length of an array are parts of it."""
+        found = None
         if self._lean and expr.op == "getattr" and expr.attr == "shape":
-            array = self.typeof(expr.value.name)
-            if isinstance(array, types.Array):
-                return self._part(array, self.loadvar(expr.value.name), "shape")
-        return super().lower_expr(resty, expr)
+            found = self._shape(expr.value)
+        elif self._lean and expr.op == "call" and self._is_length(expr.func):
+            shape = self._shape(expr.args[0])
+            found = shape and self.builder.extract_value(shape, 0)
+        return found or super().lower_expr(resty, expr)
+
+    def _is_length(self, function: Any) -> bool:
+        """Whether a function is Python's `len`."""
+        return getattr(self.typeof(function.name), "typing_key", None) is len
+
+    def _shape(self, variable: Any) -> Any:
+        """Shape of an array; None if it is another thing."""
+        kind = self.typeof(variable.name)
+        return (
+            self._part(kind, self.loadvar(variable.name), "shape") if isinstance(kind, types.Array) else None
+        )
+
+    def _put_together(self, kind: Any, *members: Any) -> Any:
+        """A value of several members."""
+        value = Constant(self.context.get_value_type(kind), Undefined)
+        for position, each in enumerate(members):
+            value = self.builder.insert_value(value, each, position)
+        return value
 
     def lower_getitem(self, resty: Any, expr: Any, value: Any, index: Any, signature: Any) -> Any:
-        """Read an item of an array."""
+        """Read an item of an array, or look at a row."""
         array = self.typeof(value.name)
         indices = self._indices(array, index)
-        if indices is None or isinstance(resty, types.Array):
+        if indices is None:
             return super().lower_getitem(resty, expr, value, index, signature)
         pointer = self._address(array, self.loadvar(value.name), indices)
+        if isinstance(resty, types.Array):
+            return self._row(array, self.loadvar(value.name), len(indices), resty, pointer)
         align = None if array.aligned else 1
         item = self.context.unpack_value(self.builder, array.dtype, pointer, align=align)
         return self.context.cast(self.builder, item, array.dtype, resty)
@@ -159,14 +182,29 @@ class LeanLower(Lower):
         steps = [self._from_start(*each, size) for each, size in zip(indices, shape, strict=False)]
         if array.layout == "C":
             position = steps[0]
-            for step, size in zip(steps[1:], shape[1:], strict=True):
-                position = builder.add(builder.mul(position, size), step)
+            for step, size in zip_longest(steps[1:], shape[1:]):
+                position = builder.mul(position, size)
+                position = position if step is None else builder.add(position, step)
             return builder.gep(data, [position])
         strides = cgutils.unpack_tuple(builder, self._part(array, value, "strides"), array.ndim)
         offset = builder.mul(steps[0], strides[0])
-        for step, stride in zip(steps[1:], strides[1:], strict=True):
+        for step, stride in zip(steps[1:], strides[1:], strict=False):
             offset = builder.add(offset, builder.mul(step, stride))
         return cgutils.pointer_add(builder, data, offset)
+
+    def _row(self, array: Any, value: Any, fixed: int, kind: Any, pointer: Any) -> Any:
+        """What is left of an array where its first indices are fixed."""
+        builder = self.builder
+        shape, strides = (
+            cgutils.unpack_tuple(builder, self._part(array, value, name), array.ndim)[fixed:]
+            for name in ("shape", "strides")
+        )
+        count = shape[0]
+        for size in shape[1:]:
+            count = builder.mul(count, size)
+        owner, parent, size = (self._part(array, value, name) for name in ("meminfo", "parent", "itemsize"))
+        both = (cgutils.pack_array(builder, each) for each in (shape, strides))
+        return self._put_together(kind, owner, parent, count, size, pointer, *both)
 
     def _from_start(self, index: Any, kind: Any, size: Any) -> Any:
         """An index, counted from the start: what is negative counts from the end."""

@@ -32,11 +32,11 @@ It leaves its garbage where it is, and ends without taking Python apart: that wo
 """
 PATIENCE = 300.0  # s that it is waited for
 ROLLING = "asperity.kernels.stepping.roll_prepared"
-ROLLING_TIME = 9.0
+ROLLING_TIME = 6.5
 """Processor time of compiling what rolls, s, at a pace of one."""
-CONTACT_TIME = 6.5
+CONTACT_TIME = 4.5
 """That of what contacts on all kinds of cells share."""
-CELLS_TIME = {"whole": 6.5, "covered": 10.0}
+CELLS_TIME = {"whole": 5.0, "covered": 7.5}
 """That of what each kind of cells has for itself."""
 
 
