@@ -257,7 +257,7 @@ def texture(seed, points=192, longest=20 * UM):
     [
         lambda seed: self_affine((32, 32), (UM, UM), seed=seed, **AFFINE).heights,
         lambda seed: from_map(texture(0, 64), (50, 30), seed=seed).heights,
-        lambda seed: homogeneity(texture(2), surrogates=19, seed=seed).expected,
+        lambda seed: homogeneity(texture(2, 96, 10 * UM), surrogates=19, seed=seed).expected,
     ],
 )
 def test_seeds_reproduce_and_differ(make):
