@@ -177,7 +177,7 @@ REFUSED = [
     ("wheel metres.csv", "Is the unit of the coordinates right?"),
     ("wheel straight-web --highest 4", 'as "5 kHz"'),
     ("bearing 6299", "allowed: the path of a bearing file (TOML). Did you mean 6209"),
-    ("bearing", "bearing: received none; allowed: a NAME or a FILE. 63 bearings have a name"),
+    ("bearing", "bearing: received none; allowed: a NAME or a FILE. 73 bearings have a name"),
     ("bearing 6205 --radial '100 N' --speed '6e5 1/min'", "1/min, with 25400 N of each ball outwards"),
     ("bearing 6205 --radial '1e-12 N' --speed '30 Hz'", "allowed: what the balls carry. Try another load"),
     ("bearing 6205 --radial 5", "radial: received '5'; allowed: a force at least 0, with its unit"),

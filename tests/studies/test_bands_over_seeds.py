@@ -9,6 +9,7 @@ import asperity
 from asperity.errors import InputError
 from asperity.reporting.chart import INK, Area, Line
 from asperity.reporting.study_figures import ensemble_figure
+from asperity.studies.ensemble import mean_and_scatter
 from small_cases import COARSE
 
 CASE = COARSE | {
@@ -109,3 +110,11 @@ def test_panels_of_other_keys_reach_from_first_to_last_and_are_counted_where_som
     *panels, _, left = ensemble_figure(asperity.prediction_band(swept), {})
     assert [panel.title.split()[2] for panel in (panels[0], panels[-1])] == ["0", "8"]
     assert left == f"{len(panels)} of 9 values of speed are shown; the CSV file has all."
+
+
+def test_fewer_than_two_members_do_not_scatter():
+    """None, one and two of them: (n − 1) is of two at least."""
+    levels = np.array([[np.nan, 1.0, 1.0], [np.nan, np.nan, 3.0]])
+    mean, scatter = mean_and_scatter(table(levels, band=[1.0, 2.0, 3.0]))
+    np.testing.assert_array_equal(scatter["force_level"], [np.nan, np.nan, np.sqrt(2.0)])
+    np.testing.assert_array_equal(mean["force_level"], [np.nan, 1.0, 2.0])
