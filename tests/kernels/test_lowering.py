@@ -5,9 +5,12 @@ from typing import NamedTuple
 import numba
 import numpy as np
 import pytest
+from llvmlite import ir
 from numba.core.codegen import CPUCodeLibrary
+from numba.core.compiler import run_frontend
 
 from asperity.kernels import options
+from asperity.kernels.lowering import assigned_once, leave_out_unused
 from asperity.kernels.options import CALLED, INNER, LOOP, compiled
 
 
@@ -196,3 +199,40 @@ def test_intermediate_code_is_half_of_what_numba_writes(function):
     arguments = np.ones(5), np.ones((4, 3)), 2
     own = lines_of(compiled(_nrt=False)(function), *arguments)
     assert own < 0.5 * lines_of(numba.njit(_nrt=False)(function), *arguments)
+
+
+def test_what_a_choice_between_paths_or_a_call_takes_is_kept():
+    number, called = ir.DoubleType(), ir.FunctionType(ir.VoidType(), [])
+    function = ir.Function(
+        ir.Module(),
+        ir.FunctionType(number, [number.as_pointer(), called.as_pointer().as_pointer()]),
+        "chosen",
+    )
+    begin, end = function.append_basic_block(), function.append_basic_block()
+    builder = ir.IRBuilder(begin)
+    kept = [builder.load(function.args[0])]
+    builder.extract_value(ir.Constant(ir.LiteralStructType([number]), ir.Undefined), 0)
+    builder.fptosi(builder.load(function.args[0]), ir.IntType(64))
+    kept += [builder.load(function.args[1])]
+    kept += [builder.call(kept[-1], []), builder.branch(end)]
+    builder.position_at_end(end)
+    choice = builder.phi(number)
+    choice.add_incoming(kept[0], begin)
+    builder.ret(choice)
+    leave_out_unused(function)
+    assert begin.instructions == kept
+
+
+def test_a_variable_that_may_be_used_without_its_one_assignment_is_none_of_those():
+    def function(c, n):
+        if c:
+            x = n
+        y = n
+        for i in range(n):
+            y = y + i
+            z = y
+        return x + y + z
+
+    once = assigned_once(run_frontend(function).blocks)
+    assert {"c", "n"} <= once
+    assert not {"x", "y", "z"} & once

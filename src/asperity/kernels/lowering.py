@@ -268,5 +268,3 @@ def _used_by(instruction: Any) -> Iterable[Any]:
     """What an instruction takes."""
     yield from instruction.operands
     yield from (value for value, _ in getattr(instruction, "incomings", ()))
-    if hasattr(instruction, "callee"):
-        yield instruction.callee
