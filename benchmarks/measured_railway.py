@@ -25,6 +25,7 @@ from pathlib import Path
 import numpy as np
 import railway_by_hand
 import railway_sleepers
+import railway_supports
 import railway_web
 from scipy.optimize import brentq, least_squares
 
@@ -241,6 +242,34 @@ CANDIDATES = {
 }
 """What could be in the rates: keys that are free beside how a hammer strikes, what is given, the sleepers."""
 NEAREST = tuple(CANDIDATES)[-1]
+BED = {"subgrade_stiffness": (50e6, 800e6, 200e6)}
+STRONGEST = 0.98
+"""Of a Maxwell element: the loss factor is then 0.35 where it is largest, s/(2√(1 + s))."""
+BY_MODES = "first_loss", "second_loss", "third_loss"
+TRIED = {
+    "the nearest": ({}, (), {}),
+    "ballast of 100 kg on subgrade": (BED, (), {"ballast_mass": 100.0}),
+    "ballast with a mass, on subgrade": (BED | {"ballast_mass": (20.0, 400.0, 100.0)}, (), {}),
+    "a loss for each mode of the sleeper": (
+        dict.fromkeys(BY_MODES, (0.002, 0.3, 0.03)),
+        ("sleeper_loss_factor",),
+        {},
+    ),
+    "pads of one relaxation": (
+        {"strength": (0.05, STRONGEST, 0.7), "frequency": (50.0, 5000.0, 800.0)},
+        ("pad_loss_factor",),
+        {"pad_stiffens": False, "pad_damping": 0.0},
+    ),
+    "sleepers 0.57 to 0.63 m apart": ({"sleeper_spacing": (0.57, 0.63, 0.6)}, (), {}),
+    "a foot that flaps at 5.4 kHz": ({}, (), {"foot_frequency": 5400.0}),
+}
+"""What is tried on top of the nearest: keys that are free beside its own, those that go, what is given."""
+PAID = tuple(TRIED)[1]
+"""The one of these with which what bays that differ do is computed, too."""
+LOSSES = "pad_loss_factor", "rail_loss_factor", "sleeper_loss_factor"
+WIDER = {name: (0.1 * low, 10.0 * high, first) for name, (low, high, first) in (FREE | BENDS).items()}
+HELD = {"pad_loss_factor": 0.2, "rail_loss_factor": 0.006, "sleeper_loss_factor": 0.03}
+"""Losses amid their limits."""
 DIFFER = {"count": 40, "seed": 3, "spacing": 0.03, "pad": 0.2, "ballast": 0.3}
 """Bays after which a track repeats, and standard deviations over the mean: 2 cm of spacing; chosen here."""
 ASKEW = {"place": (1e-3, 10e-3, 5e-3), "slope": (1e-3, 0.1, 0.03)}
@@ -260,13 +289,13 @@ def modal_mass(number):
 def sleepers(loss, heavier=1.0):
     """Half a B91 by its measured modes: both seats pressed alike, and one against the other.
 
-    Modal masses are those of an even beam, or so many times as large.
+    One loss factor, or one of each mode; modal masses are those of an even beam, or so many times as large.
     """
-    ratio = 0.5 * loss
+    first, second, third = 0.5 * np.broadcast_to(loss, 3)
     turning = HALF_SLEEPER * (0.5 * LENGTH) ** 2 / 3.0 / SEAT**2
     masses = [heavier * modal_mass(number) for number in range(3)]
-    even = ((0.0, BENT[0], BENT[2]), (0.0, ratio, ratio), (HALF_SLEEPER, *masses[::2]))
-    odd = ((0.0, BENT[1]), (0.0, ratio), (turning, masses[1]))
+    even = ((0.0, BENT[0], BENT[2]), (0.0, first, third), (HALF_SLEEPER, *masses[::2]))
+    odd = ((0.0, BENT[1]), (0.0, second), (turning, masses[1]))
     return [MeasuredSleeper(HALF_SLEEPER, *each) for each in (even, odd)]
 
 
@@ -355,11 +384,18 @@ def sideways_motion(track):
 def tracks_of(keys, kind="rigid", **more):
     """What a hammer on one rail feels, by the kind of sleeper."""
     told = dict(keys)
-    bent = told.pop("sleeper_loss_factor", 0.0), told.pop("modal_masses", 1.0)
-    if kind == KINDS[0]:
-        return [Track.named("uic60", **told, **more)]
-    found = [Track.named("uic60", measured_sleeper=each, **told, **more) for each in sleepers(*bent)]
-    return found if kind == KINDS[2] else found[:1]
+    beside = {name: told.pop(name) for name in ASIDE if name in told}
+    by_modes = [told.pop(name) for name in BY_MODES if name in told]
+    bent = told.pop("sleeper_loss_factor", by_modes or 0.0), told.pop("modal_masses", 1.0)
+    bodies = [None] if kind == KINDS[0] else sleepers(*bent)
+    return [
+        railway_supports.with_more(Track.named("uic60", measured_sleeper=each, **told, **more), **beside)
+        for each in (bodies if kind == KINDS[2] else bodies[:1])
+    ]
+
+
+ASIDE = "foot_frequency", "strength", "frequency"
+"""What `railway_supports.with_more` gives a track."""
 
 
 def lateral_rates(keys):
@@ -842,23 +878,20 @@ def fit_candidate(railway, section, free, fixed, kind=KINDS[0]):
 def decay_candidates(railway):
     """What is left of the rates of each section by candidate; if the nearest is near enough; its keys.
 
-    And of the nearest, by section, its keys, and what is left with and without the band of 5 kHz.
+    And of the nearest, by section, its keys, and what is left of each band (18,), dB.
     """
     rows, offs = [], {}
     for name, candidate in CANDIDATES.items():
         found = [fit_candidate(railway, section, *candidate) for section in SECTIONS]
-        offs = {
-            section: (keys, rms(off), rms(off[:-1]))
-            for section, (keys, off) in zip(SECTIONS, found, strict=True)
-        }
-        said = [f"{whole:.2f} ({low:.2f})" for _, whole, low in offs.values()]
-        rows.append([name, *said, f"{np.mean([whole for _, whole, _ in offs.values()]):.2f}"])
+        offs = dict(zip(SECTIONS, found, strict=True))
+        said = [f"{rms(off):.2f} ({rms(off[:-1]):.2f})" for _, off in found]
+        rows.append([name, *said, f"{np.mean([rms(off) for _, off in found]):.2f}"])
     asked, keys_of = [], []
-    for section, (keys, off, _) in offs.items():
-        both = level(railway.rates(section, "vertical", "2012", "none"))
+    for section, (keys, off) in offs.items():
+        both, left = level(railway.rates(section, "vertical", "2012", "none")), rms(off)
         scatter = rms(both[0] - both[1])
-        met = ["yes" if off <= most else "no" for most in (scatter, 1.2)]
-        asked.append([section, f"{off:.2f}", f"{scatter:.2f}", *met])
+        met = ["yes" if left <= most else "no" for most in (scatter, 1.2)]
+        asked.append([section, f"{left:.2f}", f"{scatter:.2f}", *met])
         row = [f"{1e-6 * keys[name]:.0f}" for name in ("pad_stiffness", "ballast_stiffness")]
         row += [f"{1e-3 * keys['ballast_damping']:.0f}"]
         row += [f"{keys[f'{part}_loss_factor']:.2g}" for part in ("pad", "rail", "sleeper")]
@@ -877,11 +910,16 @@ def decay_candidates(railway):
     return table(["", *SECTIONS, "mean"], rows), table(better, asked), table(head, keys_of), offs
 
 
-def bays_that_differ(railway, nearest):
-    """What bays that differ do to rates of the nearest kind of track, by section: no key is free for it."""
-    sideways_of, rows = partial(webbed_sideways, railway), []
+def bays_that_differ(railway, nearest, more=(), given=()):
+    """What bays that differ do to rates of the nearest kind of track, by section: no key is free for it.
+
+    By section what both rails differ by, what is left with bays alike and with bays that differ, and by how
+    much a place is off their mean, rms dB of 100 Hz to 4 kHz.
+    """
+    sideways_of, found = partial(webbed_sideways, railway), {}
     free, fixed, kind = CANDIDATES[NEAREST]
-    for section, (keys, _, left) in nearest.items():
+    free, fixed = free | dict(more), fixed | dict(given)
+    for section, (keys, off) in nearest.items():
         both = level(railway.rates(section, "vertical", "2012", "none"))
         places = hammered_in_bays(keys | fixed, sideways_of(section), kind)
         factor = energy(places.mean(axis=0))
@@ -889,12 +927,87 @@ def bays_that_differ(railway, nearest):
         def computed(each, section=section, factor=factor):
             return factor * hammered_askew(each | fixed, sideways_of(section), kind)
 
-        _, off = fitted(computed, free | ASKEW, both.mean(axis=0))
-        told = (both[0] - both[1])[:-1], places.std(axis=0)[:-1], off[:-1]
-        apart, by_place, in_bays = (rms(each) for each in told)
-        rows.append([section, *(f"{each:.2f}" for each in (apart, left, in_bays, by_place))])
+        _, in_bays = nearer(computed, free | ASKEW, keys, both.mean(axis=0))
+        told = both[0] - both[1], off, in_bays, places.std(axis=0)
+        found[section] = [rms(each[:-1]) for each in told]
+    return found
+
+
+def bays_table(found):
+    """The same as a table."""
+    rows = [[section, *(f"{each:.2f}" for each in own)] for section, own in found.items()]
     head = ["100 Hz to 4 kHz, rms dB", "left − right", "left of the nearest, bays alike", "bays differ"]
     return table([*head, "bays differ: one place of the hammer less the mean"], rows)
+
+
+def nearer(computed, free, known, aim):
+    """As `fitted`, begun at first guesses and where another fit ended, a little within limits: the better."""
+    begun = {
+        name: (low, high, float(np.clip(known.get(name, first), 1.02 * low, 0.98 * high)))
+        for name, (low, high, first) in free.items()
+    }
+    return min((fitted(computed, each, aim) for each in (free, begun)), key=lambda end: rms(end[1]))
+
+
+def fit_on_nearest(railway, section, nearest, more, gone=(), given=(), bands=None):
+    """Keys and what is left of bands, dB, with more free beside the nearest, whose keys are known."""
+    free, fixed, kind = CANDIDATES[NEAREST]
+    free = {name: each for name, each in (free | ASKEW | more).items() if name not in gone}
+    fixed, sideways = fixed | dict(given), webbed_sideways(railway, section)
+    aim = level(railway.rates(section, "vertical", "2012", "none")).mean(axis=0)
+    return nearer(
+        lambda keys: hammered_askew(keys | fixed, sideways, kind)[:bands], free, nearest, aim[:bands]
+    )
+
+
+def tried_on_nearest(railway, nearest):
+    """What more of physics leaves of rates on top of the nearest, and bays that differ of one of these."""
+    rows, paid = [], {}
+    for name, (more, gone, given) in TRIED.items():
+        found = {
+            section: fit_on_nearest(railway, section, nearest[section][0], more, gone, given)
+            for section in SECTIONS
+        }
+        if name == PAID:
+            paid = found
+        said = [f"{rms(off):.2f} ({rms(off[:-1]):.2f})" for _, off in found.values()]
+        keys = f"{len(more) - len(gone):+d}" if more or gone else "0"
+        rows.append([name, keys, *said, f"{np.mean([rms(off[:-1]) for _, off in found.values()]):.2f}"])
+    more, _, given = TRIED[PAID]
+    bays = [each[2] for each in bays_that_differ(railway, paid, more, given).values()]
+    words = [f"({each:.2f})" for each in bays]
+    rows.append([f"{PAID}, bays that differ", "+1", *words, f"{np.mean(bays):.2f}"])
+    scatter = [level(railway.rates(each, "vertical", "2012", "none")) for each in SECTIONS]
+    both = [f"{rms(each[0] - each[1]):.2f} ({rms((each[0] - each[1])[:-1]):.2f})" for each in scatter]
+    rows.append(["left − right", "", *both, ""])
+    stiff = ", ".join(f"{1e-6 * keys['subgrade_stiffness']:.0f}" for keys, _ in paid.values())
+    return table(["rms dB", "keys more", *SECTIONS, "mean without 5 kHz"], rows), stiff
+
+
+def losses_on_limits(railway, nearest):
+    """Losses of the nearest that lie on a limit, what they would be without limits, and what it matters."""
+    rows = []
+    for section, (keys, off) in nearest.items():
+        limits = FREE | BENDS
+        freely, left = fit_on_nearest(railway, section, keys, {name: WIDER[name] for name in LOSSES})
+        low, _ = fit_on_nearest(railway, section, keys, {}, bands=-1)
+        _, held = fit_on_nearest(railway, section, keys, {}, gone=LOSSES, given=HELD)
+        said = []
+        for name in LOSSES:
+            told = [f"{keys[name]:.2g}{on_limit(keys[name], limits[name])}", f"{freely[name]:.2g}"]
+            if name == "rail_loss_factor":
+                told.append(f"{low[name]:.2g}{on_limit(low[name], limits[name])}")
+            said += told
+        rows.append([section, *said, *(f"{rms(each):.2f}" for each in (off, left, held))])
+    head = ["", "pad", "without limits", "rail", "without limits", "fitted without 5 kHz"]
+    head += ["sleeper", "without limits", "left, rms dB", "left without limits", "left with 0.2, 0.006, 0.03"]
+    return table(head, rows)
+
+
+def on_limit(value, limits):
+    """A word on a value within a hundredth of a limit."""
+    low, high, _ = limits
+    return " (most)" if value > 0.99 * high else " (least)" if value < 1.01 * low else ""
 
 
 def determined(found):
@@ -1095,6 +1208,11 @@ def candidates(found):
     for name, keys in RUNS.items():
         other = found.case(REFERENCE, duration=0.5, **keys)
         spectra[name] = own + over_middle(other, asperity.run(other)) - over_middle(case, tree)
+    along = mean_of(found.runs[REFERENCE])
+    along[PARTS.index("rail")] += railway_by_hand.of_waves(
+        tracks_of(found.track)[0], BAND, AXLES | MICROPHONE, NEAR
+    )
+    spectra["waves along the rail, in their near field"] = level(energy(along).sum(axis=0))
     waves = found.railway.wavelengths
 
     def rough(levels, wheels=0.0):
@@ -1574,6 +1692,7 @@ def page(found, folder):
     (blind, after), none = strail_in_numbers(found)
     fits, rates = decay_fits(found)
     candidates_of_rates, better, nearest, of_nearest = decay_candidates(found.railway)
+    tried, subgrades = tried_on_nearest(found.railway, of_nearest)
     assumed, offs = candidates(found)
     checked, faster = by_hand(found)
     wide, share_known = widths(found)
@@ -1581,7 +1700,7 @@ def page(found, folder):
     fitted_off = {section: rms(np.subtract(*rates[section, KINDS[3]])) for section in SECTIONS}
     write_table(
         LEDGER,
-        ledger(found, fitted_off, {name: each[1] for name, each in of_nearest.items()}, offs),
+        ledger(found, fitted_off, {name: rms(off) for name, (_, off) in of_nearest.items()}, offs),
         folder / "measured_railway.csv",
     )
     write_table(SHOWN, shown(found), folder / "railway_sections.csv")
@@ -1603,7 +1722,10 @@ def page(found, folder):
             better=better,
             candidates_of_rates=candidates_of_rates,
             nearest=nearest,
-            bays=bays_that_differ(found.railway, of_nearest),
+            bays=bays_table(bays_that_differ(found.railway, of_nearest)),
+            tried=tried,
+            subgrades=subgrades,
+            losses=losses_on_limits(found.railway, of_nearest),
             lateral=lateral_at(found),
             web=web_at(found),
             web_sections=web_sections(found),

@@ -2,14 +2,16 @@
 
 What a run in time tells of force, rail and microphone is held against other formulas: the contact force by
 receptances of wheel, contact and rail at places that stand still, which are the package's own, the motion of
-the rail by points that the wheel passes, the level by a line source.
+the rail by points that the wheel passes, the level by a line source; and what waves along the rail, and their
+near field, make of that level.
 """
 
 from __future__ import annotations
 
 import numpy as np
+from scipy.special import hankel2
 
-from asperity.radiation.track import IMPEDANCE
+from asperity.radiation.track import IMPEDANCE, wavenumber
 from asperity.reference import cnossos
 from asperity.scenarios.scene import force_transfer, scene_of
 from asperity.scenes.noise import rail_section
@@ -23,6 +25,10 @@ STEP = 2.5
 """Hz."""
 POINTS = 19.2 + 0.6 * (np.arange(6) + 0.5) / 6
 """Places of a bay in the middle of the run, m, at which the rail is watched."""
+
+
+APART, COUNT, LINES = 0.05, 3000, 9
+"""m between places of the rail on which waves are seen, how many, and frequencies in a band."""
 
 
 def level(energy):
@@ -84,7 +90,47 @@ def at_microphone(tree, band, noise):
     """A-weighted level of the rail, dB, over hard ground: p² = W′ρc/2d of the power W′ per length."""
     power = 1e-12 * 10.0 ** (0.1 * at_bands(tree, "radiated_power_level", band)[0, 0])
     per_length = power * len(noise["axle_positions"]) / noise["vehicle_length"]
-    near, far = (noise["receiver_distance"] + side * noise["rail_distance"] for side in (-0.5, 0.5))
-    inverse = np.mean([1.0 / np.hypot(each, noise["receiver_height"]) for each in (near, far)])
+    inverse = np.mean(1.0 / near_rail_and_far(noise))
     squared = 0.5 * per_length * IMPEDANCE * inverse
     return level(squared / 4e-10) + noise["receiver_offset"] + a_weighting(band)
+
+
+def near_rail_and_far(noise):
+    """Distances of both rails from the microphone, m."""
+    sides = noise["receiver_distance"] + np.array([-0.5, 0.5]) * noise["rail_distance"]
+    return np.hypot(sides, noise["receiver_height"])
+
+
+def heard_waves(k, beyond, distance):
+    """Squared pressure of a passage of waves, by their wavenumbers along the rail, rad/m.
+
+    Over that of as many sources that know nothing of each other, in the far field: k d |H₀(√(k² − k_x²) d)|².
+    Waves slower than sound are heard in the near field alone.
+    """
+    across = np.sqrt(np.asarray(k**2 - beyond**2, dtype=complex))
+    return k * distance * np.abs(hankel2(0, np.where(across.imag > 0.0, -across, across) * distance)) ** 2
+
+
+def of_waves(track, band, noise, share):
+    """What waves along the rail do to its level, with their near field, in place of incoherent sources, dB.
+
+    The near rail has a share of the exposure.
+    """
+    frequency = (band[:, None] * HALF_BAND ** (2.0 * (np.arange(LINES) + 0.5) / LINES - 1.0)).ravel()
+    waves = track.waves(2.0 * np.pi * frequency)
+    along = APART * (np.arange(COUNT) - COUNT // 2)
+    beyond, k = 2.0 * np.pi * np.fft.fftfreq(COUNT, APART), wavenumber(frequency)
+    square = 0.0
+    for place in track.sleeper_spacing * PLACES[::4]:
+        moved = np.stack([waves.receptance(each, place) for each in along.tolist()])
+        square = square + np.abs(np.fft.fft(moved, axis=0)) ** 2
+    near, far = (
+        np.sum(square * heard_waves(k, beyond[:, None], each), axis=0) / np.sum(square, axis=0)
+        for each in near_rail_and_far(noise)
+    )
+    moving = frequency**2 * np.sum(square, axis=0)
+    each = [
+        (moving * by).reshape(len(band), LINES).sum(axis=1)
+        for by in (share * near + (1.0 - share) * far, 1.0)
+    ]
+    return level(each[0] / each[1])

@@ -1,6 +1,7 @@
 """The scripts that guard against slowness, and compare two runs to the last bit, judge as they should."""
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -16,6 +17,8 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 import bearing_fit_intervals
 import measured_bearings as bearings
 import measured_railway as railway
+import railway_by_hand
+import railway_supports
 from compare_runs import compare, main
 from guard import CASES, ratios, rolled_in_turn, timed
 
@@ -204,6 +207,55 @@ def test_seats_that_move_by_half_have_four_times_the_modal_mass():
     given = {"sleeper_loss_factor": 0.03, "modal_masses": 4.0}
     tracks = railway.tracks_of({"pad_stiffness": 9e8} | given, railway.KINDS[2])
     assert [each.measured_sleeper for each in tracks] == heavier
+
+
+def test_waves_along_a_rail_are_heard_as_cylinders_and_all_together_as_sources_apart():
+    """In the far field 2/(π cos ψ) of what sources apart are, whose mean over all directions is one."""
+    k, far = 20.0, 1e4
+    angle = np.radians([0.0, 30.0, 60.0])
+    told = railway_by_hand.heard_waves(k, k * np.sin(angle), far)
+    assert told == pytest.approx(2.0 / (np.pi * np.cos(angle)), rel=1e-4)
+    every = k * np.cos(np.pi * (np.arange(4000) + 0.5) / 4000)  # ∫ dk/√(k₀² − k²) by Chebyshev's places
+    weighted = railway_by_hand.heard_waves(k, every, far) * np.sqrt(1.0 - (every / k) ** 2)
+    assert 0.5 * np.pi * weighted.mean() == pytest.approx(1.0, rel=1e-3)
+    slower = railway_by_hand.heard_waves(k, np.array([1.1, 1.2]) * k, 2.0)
+    fades = 2.0 * k * np.sqrt(np.array([1.1, 1.2]) ** 2 - 1.0)  # K₀(z)² goes as exp(−2z)/z
+    expected = np.log(fades[1] / fades[0]) + 2.0 * (fades[1] - fades[0])
+    assert np.log(slower[0] / slower[1]) == pytest.approx(expected, rel=2e-3)
+
+
+def test_a_foot_that_flaps_is_heavy_below_its_resonance_and_light_above():
+    """As a mass: below it carries along, far above it stays behind; at rest it is part of the rail."""
+    track = railway.tracks_of({"pad_stiffness": 9e8})[0]
+    omega = 2.0 * np.pi * np.array([1.0 + 0j, 3e3, 5e4])
+    plain, flapping = (
+        each.rail.waves(omega)[0][0] for each in (track, railway_supports.with_more(track, 5e3))
+    )
+    assert flapping[0] == pytest.approx(plain[0], rel=1e-6)
+    assert flapping[1].real > 1.01 * plain[1].real
+    assert flapping[2].real < plain[2].real
+    mass = track.mass_per_length + railway_supports.FOOT * 0.36 / 0.64
+    heavier = replace(track, mass_per_length=mass).rail.waves(omega)[0][0]
+    assert flapping[1] == pytest.approx(heavier[1], rel=2e-3)
+    still = railway_supports.with_more(track, np.inf).receptance([500.0], 0.3, 0.3)
+    assert still == pytest.approx(track.receptance([500.0], 0.3, 0.3), rel=1e-12)
+
+
+def test_the_strongest_relaxation_of_a_pad_loses_what_is_printed_at_most():
+    track = railway_supports.with_more(
+        railway.tracks_of({"pad_stiffness": 9e8, "pad_damping": 0.0})[0],
+        strength=railway.STRONGEST,
+        frequency=500.0,
+    )
+    stiffness = track.springs["pad"].stiffness(2.0 * np.pi * np.geomspace(50.0, 5e3, 400))
+    assert np.max(stiffness.imag / stiffness.real) == pytest.approx(0.35, abs=2e-3)
+    assert stiffness.real[-1] == pytest.approx((1.0 + railway.STRONGEST) * 9e8, rel=0.01)
+
+
+def test_a_value_on_a_limit_is_marked():
+    limits = railway.FREE["pad_loss_factor"]
+    told = [railway.on_limit(each, limits) for each in (0.35, 0.2, 0.05)]
+    assert told == [" (most)", "", " (least)"]
 
 
 def test_a_grid_of_runs_gives_the_nearest_or_what_lies_between():

@@ -1,0 +1,60 @@
+"""What a track could have beside what the package gives it: a foot that flaps, pads of one relaxation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+
+from asperity.structures.periodic_rail import Rail
+from asperity.structures.support import Relaxation
+from asperity.structures.track import Track
+from asperity.structures.track_parameters import Relaxations
+
+FOOT = 2.0 * 0.067 * 0.016 * 7850.0 * 0.613
+"""Mass of both halves of a UIC 60's foot that flaps, kg/m: 67 mm beside the web, 16 mm thick in the mean, and
+the share of a cantilever that its first mode takes where its root moves."""
+LOSS = 0.02
+"""Of the foot."""
+
+
+@dataclass(frozen=True)
+class FlappingRail(Rail):
+    """A rail whose foot is in resonance at a frequency, Hz."""
+
+    foot_frequency: float = np.inf
+
+    def waves(self, omega, foundation=None):
+        """As of a rail whose mass grows towards that frequency."""
+        ratio = (omega / (2.0 * np.pi * self.foot_frequency)) ** 2 / (1.0 + 1j * LOSS)
+        heavier = self.mass_per_length + FOOT * ratio / (1.0 - ratio)
+        plain = {each.name: getattr(self, each.name) for each in fields(Rail)}
+        return Rail(**(plain | {"mass_per_length": heavier})).waves(omega, foundation)
+
+
+@dataclass(frozen=True)
+class FlappingTrack(Track):
+    """A track whose rail has such a foot."""
+
+    foot_frequency: float = np.inf
+
+    @property
+    def rail(self):
+        """The rail without supports."""
+        plain = super().rail
+        own = {each.name: getattr(plain, each.name) for each in fields(Rail)}
+        return FlappingRail(**own, foot_frequency=self.foot_frequency)
+
+
+def with_more(track: Track, foot_frequency=None, strength=None, frequency=None) -> Track:
+    """The track with a foot that flaps at a frequency, Hz, or pads of a Maxwell element beside a spring.
+
+    The element adds a strength of the spring's stiffness well above its frequency, Hz.
+    """
+    if strength is not None:
+        pad = Relaxation(1.0, (strength,), (frequency,))
+        track = replace(track, relaxations=Relaxations(pad=pad))
+    if foot_frequency is not None:
+        own = {each.name: getattr(track, each.name) for each in fields(Track)}
+        track = FlappingTrack(**own, foot_frequency=foot_frequency)
+    return track
