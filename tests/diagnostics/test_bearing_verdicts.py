@@ -12,14 +12,16 @@ import pytest
 
 from asperity.diagnostics import (
     Hypothesis,
+    Tone,
     diagnose,
     diagnosis_sentence,
     impulsive_band,
     kurtogram,
     prewhitened,
 )
-from asperity.diagnostics.confidence import COEFFICIENTS, Basis
-from asperity.diagnostics.decision import Diagnosis, _agrees
+from asperity.diagnostics.confidence import COEFFICIENTS, Basis, own_share
+from asperity.diagnostics.decision import NOT_FOUND, Diagnosis, _agrees
+from asperity.diagnostics.hypotheses import chance_of
 from asperity.diagnostics.prominence import Prominence
 from asperity.errors import InputError
 from asperity.structures.ball_bearing import BallBearing
@@ -214,7 +216,8 @@ def test_tones_allow_for_contact_angle_and_slip():
 
 
 OUTER = Hypothesis("outer", 30.0, 107.66, 3.0, 40.0, 1.0)
-BASIS = SimpleNamespace(confidence=0.834)
+BASIS = SimpleNamespace(confidence=0.834, kind="fault")
+FOREIGN = SimpleNamespace(confidence=0.834, kind=NOT_FOUND)
 SOUND = Diagnosis(30.0, 30.0, "confirmed", (), (), None, 0.0, (), BASIS, 0.25, SimpleNamespace(duration=4.0))
 
 
@@ -260,6 +263,18 @@ SOUND = Diagnosis(30.0, 30.0, "confirmed", (), (), None, 0.0, (), BASIS, 0.25, S
             "The line of the shaft is not found at 30 Hz (1800 1/min): is the speed or the sampling rate "
             "wrong? Blows at "
             "35.9 Hz, resolved to 0.25 Hz, are those of no part at this speed: 83 % sure.",
+        ),
+        (
+            {"speed_is": "unconfirmed", "blows": 35.9, "nearest": replace(OUTER, part="inner", speed=29.5)},
+            "The line of the shaft is not found at 30 Hz (1800 1/min): is the speed or the sampling rate "
+            "wrong? Blows at 35.9 Hz, resolved to 0.25 Hz, are those of no part at this speed: 83 % sure. Of "
+            "a shaft at 29.5 Hz (1770 1/min) they would be those of the inner ring.",
+        ),
+        (
+            {"parts": (OUTER,), "speed_is": "unconfirmed", "basis": FOREIGN, "by_chance": 0.1},
+            "The line of the shaft is not found at 30 Hz (1800 1/min): the speed is not confirmed. If it "
+            "is right, there are lines of the outer ring at 107.7 Hz, resolved to 0.25 Hz, or of another "
+            "bearing: 81 % sure.",
         ),
         (
             {"speed_is": "unconfirmed"},
@@ -335,6 +350,43 @@ def test_confidence_rises_with_what_speaks_for_it_and_is_never_all_or_nothing():
         assert 0.03 <= min(told) <= max(told) <= 0.97
     assert sure("fault", 3.0, 5.0, 5.0, 0.2) < sure("fault", 3.0, 5.0, 5.0, 0.8)
     assert sure("nothing", 50.0) < sure("sound", 50.0)  # a shaft that is found makes it no less sure
+
+
+def test_what_lies_where_a_part_has_it_by_chance_makes_a_part_that_no_shaft_speaks_for_less_sure():
+    """Bayes by hand: four of five are ours, and of others one in ten lies there; parts that overlap count
+    once."""
+    assert own_share(0.1) == pytest.approx(0.8 / (0.8 + 0.02))
+    assert (own_share(0.0), own_share(1.0)) == (1.0, pytest.approx(0.8))
+    one = Tone(4.0, 0.0, 4.0 / 0.98, 5.0 / 1.02)
+    far = Tone(8.0, 1.0, 8.0 / 0.98, 10.0 / 1.02)
+    inside = Tone(4.2, 1.0, 4.2, 4.6)
+    assert chance_of({"outer": one}) == pytest.approx(np.log(1.25) / np.log(5.0))
+    assert chance_of({"outer": one, "inner": inside}) == chance_of({"outer": one})
+    assert chance_of({"outer": one, "inner": far}) == pytest.approx(2.0 * np.log(1.25) / np.log(10.0))
+    halved = replace(far, unlike=2)
+    assert chance_of({"ball": halved}) == chance_of({"outer": one, "inner": far})
+
+
+def test_a_part_beside_an_unheard_shaft_may_be_of_another_bearing():
+    signal = faulty_signal("outer", 30.0, 12_000.0, 2.0, noise=0.1, shaft=0.0)
+    tones = BallBearing.named("6205").tones()
+    found = diagnose(signal, 12_000.0, tones, 30.0)
+    assert found.may_be_foreign
+    assert found.by_chance == chance_of(tones)
+    assert found.confidence == pytest.approx(found.basis.confidence * own_share(found.by_chance))
+    assert found.confidence < 0.95 < found.basis.confidence
+
+
+@pytest.mark.parametrize("factor", [0.95, 1.05])
+def test_blows_of_no_part_are_told_to_be_one_at_a_speed_nearby(factor):
+    """An unheard shaft whose speed is told 5 % off: "those of no part" was all that was said."""
+    signal = faulty_signal("outer", 30.0, 12_000.0, 2.0, noise=0.1, shaft=0.0)
+    found = diagnose(signal, 12_000.0, BallBearing.named("6205").tones(), 30.0 * factor)
+    assert not found.parts
+    assert found.blows
+    assert found.nearest is not None
+    assert found.nearest.part == "outer"
+    assert found.nearest.speed == pytest.approx(30.0, rel=0.02)
 
 
 # --- band and whitening

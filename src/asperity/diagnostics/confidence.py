@@ -31,6 +31,15 @@ SHORT, LONG = 2.0, 50.0
 """Turns of the shaft, of which the logarithm counts between them."""
 LEAST = 0.03
 """Confidence, and doubt, at least: of 28 records that are all right the next one is by 29/30 (Laplace)."""
+FOREIGN = 0.2
+"""Share of records, as is supposed, whose blows are those of another bearing or machine where no line of the
+shaft speaks for this one."""
+
+
+def own_share(chance: float) -> float:
+    """How sure it is that blows where a part has them are this bearing's, where those of others lie there by
+    chance (Bayes)."""
+    return (1.0 - FOREIGN) / (1.0 - FOREIGN + FOREIGN * chance)
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 
 from asperity.arguments import ArrayLike, positive, require
-from asperity.diagnostics.confidence import Basis
+from asperity.diagnostics.confidence import Basis, own_share
 from asperity.diagnostics.envelopes import above_frequency
 from asperity.diagnostics.hypotheses import (
     NEAR,
@@ -16,6 +16,7 @@ from asperity.diagnostics.hypotheses import (
     BearingRecord,
     Hypothesis,
     Tone,
+    chance_of,
     deepest_comb,
 )
 from asperity.diagnostics.kurtogram import Kurtogram, kurtogram
@@ -25,8 +26,10 @@ from asperity.diagnostics.shaft import (
     APART,
     MAINS,
     SUPPORTED,
+    SURELY,
     at_speed,
     has_own_lines,
+    is_turn,
     near_speed,
     of_shaft_or_mains,
     once_in_a_turn,
@@ -59,6 +62,13 @@ FEW_BLOWS = 20.0
 ALIKE = 8.0
 """Score within which two parts that have the same lines are not told apart."""
 
+CLEARER = 0.5
+"""Logarithm by which the lines of a comb must be clearer, on the mean, than those of its side bands."""
+
+BESIDE = 0.005
+"""Share by which the speed of a part may be beside that of the lines of the shaft: contact angle and slip are
+in its tones."""
+
 AROUND_LINES = 2.5
 """Of the highest line that is sought, up to which others are looked at, by which it is told how far it stands
 out."""
@@ -67,6 +77,8 @@ out."""
 Speed = Literal["confirmed", "unconfirmed", "contradicted"]
 NAMES = {"outer": "outer ring", "inner": "inner ring", "ball": "ball"}
 """Of parts, as people say them."""
+NOT_FOUND = "fault, shaft not found"
+"""Kind of a verdict on a part that no line of the shaft speaks for."""
 CONFIRMED: Speed = "confirmed"
 UNCONFIRMED: Speed = "unconfirmed"
 CONTRADICTED: Speed = "contradicted"
@@ -100,6 +112,8 @@ class Diagnosis:
         Speeds, Hz, that have the lines of the shaft as well as the one given: its half, its double, ….
     otherwise : Hypothesis or None
         What the lines of the parts are as well, of a shaft at another speed.
+    nearest : Hypothesis or None
+        What blows that are those of no part would be at a speed near the one given.
     tones_alone : tuple of float
         Frequencies, Hz, of a record that holds tones alone, against which no line stands out; none of others.
     once_in_a_turn : bool
@@ -111,6 +125,8 @@ class Diagnosis:
         record.
     record : BearingRecord
         What was looked at.
+    by_chance : float
+        Chance that blows of something else lie where a part has them.
     doubts : tuple of str
         What is wrong with the recording, in sentences.
     fastest : float
@@ -134,6 +150,8 @@ class Diagnosis:
     fastest: float = math.inf
     element: str = "ball"
     otherwise: Hypothesis | None = None
+    nearest: Hypothesis | None = None
+    by_chance: float = 0.0
     tones_alone: tuple[float, ...] = ()
     once_in_a_turn: bool = False
 
@@ -148,12 +166,24 @@ class Diagnosis:
 
     @property
     def confidence(self) -> float:
-        """That this is so, 0 to 1: no more than even where the lines fit another speed better, of tones
-        alone, of a part that a rub may hide, and at a speed beyond belief, as no such record is among those
-        that it is calibrated on."""
+        """That this is so, 0 to 1: less where another bearing may have the blows; no more than even where the
+        lines fit another speed better, of tones alone, of a part that a rub may hide, and at a speed beyond
+        belief, as no such record is among those that it is calibrated on."""
         doubted = self.beyond_belief or self.otherwise is not None or bool(self.tones_alone)
-        doubted = doubted or (self.once_in_a_turn and not self.parts)
-        return min(self.basis.confidence, EVEN) if doubted else self.basis.confidence
+        doubted = doubted or (self.once_in_a_turn and not self.parts) or self.twice_in_a_turn
+        sure = self.basis.confidence * (own_share(self.by_chance) if self.may_be_foreign else 1.0)
+        return min(sure, EVEN) if doubted else sure
+
+    @property
+    def twice_in_a_turn(self) -> bool:
+        """Whether a comb of a part is that of a shaft which turns twice as fast, as of a rub, as well."""
+        own = (each for each in self.parts if each.support < SURELY)
+        return any(abs(each.tone - 2.0 * self.told) <= self.resolution for each in own)
+
+    @property
+    def may_be_foreign(self) -> bool:
+        """Whether no line of the shaft speaks for the part: another bearing may have its blows."""
+        return bool(self.parts) and self.basis.kind == NOT_FOUND
 
     @property
     def beyond_belief(self) -> bool:
@@ -333,15 +363,21 @@ def decided(
     struck = _likely([each for each in ranked if _deep(each, tones, record.duration * record.pieces)])
     struck = [each for each in struck if not _of_sound_ring(each, ranked, tones)]
     deepest = deepest_comb((each.depth, each.tone) for each in found)
-    blows = 0.0 if abs(deepest / told - 1.0) <= APART else deepest  # once a turn they are the shaft's
+    once = abs(deepest / told - 1.0) <= APART or is_turn(deepest, told, resolution)
+    blows = 0.0 if once else deepest  # once a turn they are the shaft's
     shaft, support, others = shaft_near(record, tones, told, blows)
     seen = support >= SUPPORTED and all(
         _agrees(each, told, resolution) for each in (shaft, record.speed(shaft))
     )
     there = seen and not others
-    others_own = [each for each in struck if of_shaft_or_mains(record, each, told, resolution, seen)]
-    struck = [each for each in struck if each not in others_own]
+    heard = others if seen else ()
+    of_turns = [each for each in struck if of_shaft_or_mains(record, each, told, resolution, seen, heard)]
+    struck = [each for each in struck if each not in of_turns]
     seen_at = record.speed(shaft)
+    foreign = [each for each in struck if _side_band(each, found, told, resolution)]
+    if there:
+        foreign += [each for each in struck if _beside_shaft(each, told, seen_at, resolution)]
+    struck, ranked = ([each for each in some if each not in foreign] for some in (struck, ranked))
     turns = record.duration * told
     bare = Diagnosis(
         told=told,
@@ -351,11 +387,14 @@ def decided(
         alike=(),
         faint=None,
         blows=0.0,
-        others=others if seen else (),
+        others=heard,
         basis=Basis("sound" if seen else "nothing", turns),
-        once_in_a_turn=any(once_in_a_turn(record, each, told, resolution) for each in others_own),
+        once_in_a_turn=any(
+            once_in_a_turn(record, each, speed, resolution) for each in of_turns for speed in (told, *heard)
+        ),
         resolution=resolution,
         record=record,
+        by_chance=chance_of(tones),
     )
     if not struck:
         return replace(bare, faint=next((each for each in ranked if near_speed(each, told)), None))
@@ -364,8 +403,8 @@ def decided(
     margin = _worth(best, told) - max((_worth(each, told) for each in rivals), default=0.0)
     if near_speed(best, told):
         return _of_parts(bare, best, rivals, tones, margin)
-    heard = there and not _multiple(best.speed / told)
-    ahead = AHEAD_OF_SHAFT if heard or best.every > 1 else AHEAD  # a comb of the spin is one more that fits
+    another = there and not _multiple(best.speed / told)
+    ahead = AHEAD_OF_SHAFT if another or best.every > 1 else AHEAD  # a comb of the spin is one more that fits
     here = [each for each in struck if near_speed(each, told) and abs(each.tone - best.tone) <= resolution]
     unresolved = [each for each in here if each.part == best.part]
     if unresolved and _agrees(best.speed, told, resolution):
@@ -381,7 +420,14 @@ def decided(
     faint = [each for each in ranked if near_speed(each, told) and abs(each.tone - best.tone) <= resolution]
     if faint:
         return replace(bare, faint=faint[0])
-    return replace(bare, blows=best.tone, basis=Basis("blows", turns))
+    otherwise = _nearest([each for each in struck if abs(each.tone - best.tone) <= resolution], told)
+    return replace(bare, blows=best.tone, basis=Basis("blows", turns), nearest=otherwise)
+
+
+def _nearest(found: Sequence[Hypothesis], told: float) -> Hypothesis | None:
+    """What is struck at the speed that is nearest to the one given, where that is near."""
+    nearest = min(found, key=lambda each: abs(math.log(each.speed / told)))
+    return nearest if abs(nearest.speed / told - 1.0) <= APART else None
 
 
 def _of_parts(
@@ -396,7 +442,7 @@ def _of_parts(
     close = [each for each in near if abs(each.tone - best.tone) <= 2.0 * resolution]
     alike = {each.part: each for each in close if _worth(each, told) >= _worth(best, told) - ALIKE}
     seconds = () if alike else tuple(_seconds(near, best, tones, resolution))
-    kind = "ball" if best.part == "ball" else "fault" if there else "fault, shaft not found"
+    kind = "ball" if best.part == "ball" else "fault" if there else NOT_FOUND
     basis = Basis(kind, bare.turns, margin, best.support, best.depth)
     if bare.turns < RESOLVED and basis.confidence < EVEN:
         return bare
@@ -434,6 +480,21 @@ def _deep(each: Hypothesis, tones: Mapping[str, Tone], duration: float) -> bool:
     """Whether the envelope follows the blows as it does those of a fault."""
     least = LEAST_DEPTH["turns" if tones[each.part].modulation else "stands"]
     return each.depth >= least * (1.0 + FEW_BLOWS / (each.tone * duration))
+
+
+def _side_band(each: Hypothesis, found: Sequence[Hypothesis], told: float, resolution: float) -> bool:
+    """Whether a comb is a side band, by a turn of the shaft or two, of one that is deeper and clearer."""
+    stronger = [
+        other for other in found if other.depth >= each.depth and other.clearness >= each.clearness + CLEARER
+    ]
+    off = [abs(abs(each.tone - other.tone) - turns * told) for other in stronger for turns in (1, 2)]
+    return min(off, default=math.inf) <= resolution
+
+
+def _beside_shaft(each: Hypothesis, told: float, seen_at: float, resolution: float) -> bool:
+    """Whether a part fits the speed given, but not that of the lines of the shaft, and none speak for it."""
+    off = abs(each.speed - seen_at)
+    return near_speed(each, told) and each.support < SUPPORTED and off > max(BESIDE * seen_at, resolution)
 
 
 def _of_sound_ring(each: Hypothesis, ranked: Sequence[Hypothesis], tones: Mapping[str, Tone]) -> bool:

@@ -70,6 +70,19 @@ class Tone:
         )
 
 
+def chance_of(tones: Mapping[str, Tone]) -> float:
+    """Chance that a comb of any frequency, from an octave below the lowest tone to one above the highest, is
+    taken for one of these at the speed given: for each of them several frequencies are."""
+    every = [part.of_every(n) for part in tones.values() for n in range(1, part.unlike + 1)]
+    spans = sorted((part.lowest * (1.0 - NEAR), part.highest * (1.0 + NEAR)) for part in every)
+    covered = 0.0
+    reached = 0.0
+    for low, high in spans:
+        covered += max(float(np.log(high / max(low, reached))), 0.0)
+        reached = max(reached, high)
+    return covered / float(np.log(4.0 * reached / spans[0][0]))
+
+
 @dataclass(frozen=True)
 class Hypothesis:
     """A part that is struck at a speed, and what speaks for it.

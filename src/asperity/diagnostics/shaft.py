@@ -80,31 +80,45 @@ def _around() -> Array:
 
 
 def of_shaft_or_mains(
-    record: BearingRecord, each: Hypothesis, told: float, resolution: float, seen: bool
+    record: BearingRecord,
+    each: Hypothesis,
+    told: float,
+    resolution: float,
+    seen: bool,
+    others: tuple[float, ...] = (),
 ) -> bool:
-    """Whether blows are those of a shaft with the speed given, as of a coupling or a fan, or of the mains.
+    """Whether blows are those of a shaft with the speed given, as of a coupling or a fan, or with one of
+    others that have its lines, or of the mains.
 
     Multiples of its speed are the shaft's where its lines are seen; of a half and a third of it, as of what
     is loose, the loud lines are those of the shaft.
     """
-    if any(_of_turns(record, each, speed) for speed in (told, each.speed)):
+    if any(_of_turns(record, each, speed) for speed in (told, each.speed, *others)):
+        return True
+    double = [speed for speed in others if _is_double(speed, told)]
+    if each.support < SURELY and any(abs(each.tone - speed) <= resolution for speed in double):
         return True
     if near_speed(each, told):
         return False
-    if _is_turn(each, told, resolution):
+    if is_turn(each.tone, told, resolution):
         return each.support < SURELY
     lines = (round(each.tone / told) * told, *MAINS) if seen else MAINS
     return min(abs(each.tone - line) for line in lines) <= 0.5 * resolution
 
 
+def _is_double(speed: float, told: float) -> bool:
+    """Whether a shaft would turn twice as fast as told."""
+    return at_speed(0.5 * speed, told)
+
+
 def once_in_a_turn(record: BearingRecord, each: Hypothesis, told: float, resolution: float) -> bool:
     """Whether deep blows that are no part's are those of the shaft."""
-    return each.depth >= DEEP and (_is_turn(each, told, resolution) or _of_turns(record, each, told))
+    return each.depth >= DEEP and (is_turn(each.tone, told, resolution) or _of_turns(record, each, told))
 
 
-def _is_turn(each: Hypothesis, told: float, resolution: float) -> bool:
+def is_turn(tone: float, told: float, resolution: float) -> bool:
     """Whether a tone is the speed given, or a half or a third of it."""
-    return min(abs(each.tone - told / times) for times in (1, *TIMES)) <= resolution
+    return min(abs(tone - told / times) for times in (1, *TIMES)) <= resolution
 
 
 def _of_turns(record: BearingRecord, each: Hypothesis, speed: float) -> bool:

@@ -9,6 +9,7 @@ from asperity.written_numbers import rounded
 
 ASKED = "is the speed or the sampling rate wrong?"
 ONCE_IN_A_TURN = "Blows come with the turns of the shaft, as of a rub; fainter ones may hide behind them."
+TWICE_IN_A_TURN = "A shaft at {} that rubs would have these lines, too."
 OF_BALLS = "How sure rests on records of ball bearings."
 BEYOND = "Hardly any bearing of this size turns at {}, as told: is the speed in 1/min?"
 
@@ -38,6 +39,8 @@ def diagnosis_sentence(found: Diagnosis, known: str | None = None) -> str:
         words.append(
             f"Of the fault of the {found.name(known)} that is known to be there, the record holds no sign."
         )
+    if found.twice_in_a_turn:
+        words.append(TWICE_IN_A_TURN.format(turns(2.0 * found.told)))
     if found.mains:
         words.append(f"What the mains feed has lines at {found.mains:.0f} Hz, too.")
     if found.element != "ball":
@@ -74,6 +77,14 @@ def _otherwise(found: Diagnosis) -> str:
     if other is None:
         return ""
     return f"; they fit the {found.name(other.part)} of a shaft at {turns(other.speed)} better"
+
+
+def _nearest(found: Diagnosis) -> str:
+    """What blows of no part would be of a shaft at a speed near the one told."""
+    near = found.nearest
+    if near is None:
+        return ""
+    return f" Of a shaft at {turns(near.speed)} they would be those of the {found.name(near.part)}."
 
 
 def _half(each: Hypothesis) -> str:
@@ -142,11 +153,13 @@ def _of_parts(found: Diagnosis) -> str:
             "unconfirmed": "If it is right, there are",
             "contradicted": "At that speed there are",
         }[found.speed_is]
-        return f"{begin} {there}, {resolved}{_otherwise(found)}: {sure}."
+        foreign = ", or of another bearing" * (found.may_be_foreign and found.otherwise is None)
+        return f"{begin} {there}, {resolved}{foreign}{_otherwise(found)}: {sure}."
     if found.blows:
-        return (
+        blows = (
             f"Blows at {_hertz(found.blows, found)}, {resolved}, are those of no part at this speed: {sure}."
         )
+        return f"{blows}{_nearest(found)}"
     condition = "" if found.speed_is == "confirmed" or found.others else " if it is right"
     parts = f"rings or {found.element}s"
     hidden = f"{ONCE_IN_A_TURN} " if found.once_in_a_turn else ""
