@@ -255,7 +255,7 @@ def test_a_record_of_a_tenth_of_a_second_says_what_is_too_short_and_judges_the_r
     assert re.match(
         r"The record of 0.1 s, 3 turns, is too short for the line of the shaft at 30 Hz \(1800 1/min\), "
         r"which takes 0.2 s: the speed is not confirmed. If it is right, there are lines of the outer ring "
-        r"at 1\d\d Hz, resolved to 10 Hz: \d+ % sure.",
+        r"at 1\d\d Hz, resolved to 10 Hz, or of another bearing: \d+ % sure.",
         last_line(call(*words).stdout),
     )
     np.save("run.npy", signal[:256])

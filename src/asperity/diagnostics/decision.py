@@ -374,9 +374,10 @@ def decided(
     of_turns = [each for each in struck if of_shaft_or_mains(record, each, told, resolution, seen, heard)]
     struck = [each for each in struck if each not in of_turns]
     seen_at = record.speed(shaft)
-    foreign = [each for each in struck if _side_band(each, found, told, resolution)]
+    near = [each for each in struck if near_speed(each, told) and record.holds_shaft(told)]
+    foreign = [each for each in near if _side_band(each, found, told, resolution)]
     if there:
-        foreign += [each for each in struck if _beside_shaft(each, told, seen_at, resolution)]
+        foreign += [each for each in near if _beside_shaft(each, seen_at, resolution)]
     struck, ranked = ([each for each in some if each not in foreign] for some in (struck, ranked))
     turns = record.duration * told
     bare = Diagnosis(
@@ -488,13 +489,13 @@ def _side_band(each: Hypothesis, found: Sequence[Hypothesis], told: float, resol
         other for other in found if other.depth >= each.depth and other.clearness >= each.clearness + CLEARER
     ]
     off = [abs(abs(each.tone - other.tone) - turns * told) for other in stronger for turns in (1, 2)]
-    return min(off, default=math.inf) <= resolution
+    return min(off, default=math.inf) <= 0.5 * resolution
 
 
-def _beside_shaft(each: Hypothesis, told: float, seen_at: float, resolution: float) -> bool:
+def _beside_shaft(each: Hypothesis, seen_at: float, resolution: float) -> bool:
     """Whether a part fits the speed given, but not that of the lines of the shaft, and none speak for it."""
     off = abs(each.speed - seen_at)
-    return near_speed(each, told) and each.support < SUPPORTED and off > max(BESIDE * seen_at, resolution)
+    return each.support < SUPPORTED and off > max(BESIDE * seen_at, resolution)
 
 
 def _of_sound_ring(each: Hypothesis, ranked: Sequence[Hypothesis], tones: Mapping[str, Tone]) -> bool:

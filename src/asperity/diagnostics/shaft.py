@@ -58,9 +58,11 @@ def shaft_near(
     spans = [share * near for share in SHARES]
     spans += [here / np.arange(part.lowest, part.highest, FINE * part.order) for part in tones.values()]
     others = [float(span[span.size // 2]) for span in spans if support(span).max() > clear[at]]
-    clearer = [times for times in MULTIPLES if support(times * near).max() > clear[at] + BETTER]
-    fewer = [times for times in TIMES if support(near, times).max() < ODD]
-    others += [times * here for times in {*clearer, *fewer}]
+    ahead = {times: float(support(times * near).max() - clear[at]) for times in MULTIPLES}
+    clearer = [times for times in MULTIPLES if ahead[times] > BETTER]
+    own = [(times, SUPPORTED if ahead[times] > 0.0 else ODD) for times in TIMES]
+    fewer = [times for times, least in own if support(near, times).max() < least]
+    others += [times * here for times in (*clearer, *fewer)]
     others += [here / times for times in TIMES if support(near / times, times).max() >= ODD]
     return here, float(clear[at]), tuple(sorted(set(others)))
 
