@@ -118,11 +118,18 @@ def test_a_direction_may_stand_before_its_line_and_bands_without_a_unit(track, t
     path = tmp_path / "decay_rates.csv"
     for begin in ("f in Hz", ""):
         bands = "".join(f";{each}{units}" for each in ("800", "1000", "1250", "1600"))
-        path.write_text(f"EN 15461, dB/m\n{begin}{bands}\nVertical;4;3;2;1,5\nlateral;1;0,8;0,6;0,5\n")
+        path.write_text(f"EN 15461, dB/m\n{begin}{bands}\nVertical;4;3;2;1,5\nLateral;1;0,8;0,6;0,5\n")
         vertical, lateral = measured_for(track, path, {}, None)
         assert (vertical.what, lateral.what) == ("vertical decay rate", "lateral decay rate")
         assert vertical.at == pytest.approx(10.0 ** np.array([2.9, 3.0, 3.1, 3.2]))
         assert (vertical.values[-1], lateral.values[1], vertical.records) == (1.5, 0.8, 1)
+
+
+def test_a_column_that_is_called_direction_counts_before_others(track, tmp_path):
+    path = tmp_path / "decay_rates.csv"
+    path.write_text("sensor,direction,800,1000,1250,1600\nvertical,lateral,4,3,2,1\n")
+    (found,) = measured_for(track, path, {}, None)
+    assert found.what == "lateral decay rate"
 
 
 @pytest.mark.parametrize(
