@@ -160,6 +160,17 @@ def test_what_recurs_seldom_is_limited_to_what_recurs_once_in_two_turns():
     np.testing.assert_allclose(piece, np.clip(values, -tenth, tenth), atol=1e-12)
 
 
+def test_pieces_of_loud_tones_are_faded_at_their_ends_and_others_are_not():
+    time = np.arange(12_000) / 12_000.0
+    tone = np.sin(2.0 * np.pi * 29.3 * time + 1.0)
+    noise = np.random.default_rng(0).normal(size=time.size)
+    (loud,) = SignalPieces.of([tone + 0.01 * noise], 1e9, rate=12_000.0, speed=29.3)
+    assert np.abs(loud[[0, -1]]).max() < 1e-6
+    np.testing.assert_allclose(loud[3_000:9_000], (tone + 0.01 * noise)[3_000:9_000], atol=0.01)
+    (plain,) = SignalPieces.of([tone + noise], 1e9, rate=12_000.0, speed=29.3)
+    assert np.abs(plain[:3_000]).std() > 0.5
+
+
 @pytest.mark.parametrize("size", [262_147, 999_983, 1_048_576])
 def test_long_pieces_have_lengths_that_are_quick_to_transform(size):
     """262 147 and 999 983 are primes, which take three times as long; short pieces stay whole."""

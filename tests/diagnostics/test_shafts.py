@@ -5,6 +5,7 @@ import pytest
 from scipy.signal import resample, resample_poly
 
 from asperity.diagnostics import Hypothesis, diagnose, diagnosis_sentence
+from asperity.diagnostics.decision import _side_band
 from asperity.diagnostics.shaft import has_own_lines, of_shaft_or_mains
 from asperity.structures.ball_bearing import BallBearing
 from faulty_signals import GEOMETRIES, faulty_signal, orders
@@ -52,6 +53,19 @@ def test_a_rub_at_half_and_at_double_the_speed_is_no_part(factor, struck):
         if found.parts and not right:
             said = "A shaft at 29.3 Hz (1758 1/min) that rubs would have these lines, too."
             assert said in diagnosis_sentence(found)
+
+
+@pytest.mark.parametrize(
+    ("beside", "clearness", "depth", "is_one"),
+    [(1.0, 3.0, 0.5, True), (-2.0, 3.0, 0.5, True), (3.0, 3.0, 0.5, False), (1.01, 3.0, 0.5, False),
+     (1.0, 2.2, 0.5, False), (1.0, 3.0, 0.3, False)],
+)  # fmt: skip
+def test_a_side_band_is_a_turn_or_two_beside_blows_that_are_deeper_and_clearer(
+    beside, clearness, depth, is_one
+):
+    each = Hypothesis("outer", SPEED, 105.0, 2.0, 20.0, 0.4)
+    other = Hypothesis("inner", 31.0, 105.0 + beside * SPEED, clearness, 0.0, depth)
+    assert _side_band(each, [each, other], SPEED, 0.5) is is_one
 
 
 def test_side_bands_of_another_bearing_are_no_part_of_this_one():
