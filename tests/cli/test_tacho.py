@@ -51,6 +51,23 @@ def test_a_fault_in_a_run_up_is_named_over_angle(tacho, reads):
     assert (turned["slowest"], turned["fastest"]) == pytest.approx((20.0, 38.0), rel=0.03)
 
 
+def test_a_verdict_by_a_tacho_doubts_its_pulses_not_the_speed_told():
+    np.savez("run.npz", acceleration=struck(), tacho=pulses(2))
+    words = (*GIVEN, "--array", "acceleration", "--tacho", "tacho", "--tacho-reads")
+    said = " ".join(call(*words, "2 pulses").stdout.split())
+    assert "1741 1/min by the tacho: lines of the shaft are not found" in said
+    assert "By the tacho the shaft turns at 29.02 Hz (1741 1/min) on average, if it gives 2 pulses in" in said
+    assert "If it does, there are lines of the outer ring at 104.0 Hz" in said
+    said = " ".join(call(*words, "4 pulses").stdout.split())
+    assert "its line is not found there: does the tacho give 4 pulses in a turn, and is it on this" in said
+
+
+def test_a_steady_speed_smears_nothing():
+    np.savez("run.npz", acceleration=struck(), tacho=np.full(TIME.size, 29.0))
+    words = (*GIVEN, "--array", "acceleration", "--tacho", "tacho", "--tacho-reads", "Hz")
+    assert "Frequencies are those at 1740 1/min.\n" in call(*words).stdout
+
+
 def test_over_time_it_is_not():
     found = told(SPEEDS, "--speed", "29 Hz")
     assert found["faults"] == []
@@ -91,6 +108,18 @@ REFUSED = [
     (np.maximum(SPEEDS - 30.0, 0.0), (*COLUMN, "Hz"), "allowed: speeds above zero. Cut off where it stands"),
     (np.full(TIME.size, np.nan), (*COLUMN, "Hz"), "tacho in run.npz: received no number; allowed: speeds"),
     (np.full(TIME.size, 0.5), (*COLUMN, "Hz"), "tacho: received 1.5 turns; allowed: at least 4 turns"),
+    (
+        pulses(1),
+        (*COLUMN, "60 pulses"),
+        "allowed: at least 4 turns. Does the tacho give 60 pulses in a turn, and is it on this shaft? "
+        "Otherwise record longer.",
+    ),
+    (
+        300.0 * SPEEDS,
+        (*COLUMN, "Hz"),
+        "Is the speed beside the signal that of this shaft, and are its unit and the rate right? Otherwise "
+        "sample faster.",
+    ),
     (SPEEDS, ("--tacho-reads", "Hz", "--speed", "29 Hz"), "received 'Hz'; allowed: --tacho COLUMN with it"),
     (MISSED, (*COLUMN, "1 pulse"), "as far apart as the next, near sample"),
     (0.0 * TIME, (*COLUMN, "1 pulse"), "Is it the column of the tacho?"),

@@ -12,6 +12,7 @@ import pytest
 
 from asperity.diagnostics import (
     Hypothesis,
+    Tacho,
     Tone,
     diagnose,
     diagnosis_sentence,
@@ -336,6 +337,55 @@ def test_each_kind_of_verdict_says_the_speed_first_then_the_part_and_how_sure(ch
     )
     if diagnosis.parts:
         assert diagnosis_sentence(diagnosis, diagnosis.parts[0].part) == said
+
+
+@pytest.mark.parametrize(
+    ("pulses", "change", "said"),
+    [
+        (0, {}, "By the tacho the shaft turns at 30 Hz (1800 1/min) on average. No lines of rings or balls "
+         "stand out: no sign of a fault, 83 % sure."),
+        (60, {"parts": (OUTER,)}, "By the tacho the shaft turns at 30 Hz (1800 1/min) on average. There are "
+         "lines of the outer ring at 107.7 Hz, resolved to 0.25 Hz: 83 % sure."),
+        (0, {"parts": (OUTER,), "speed_is": "unconfirmed"}, "By the tacho the shaft turns at 30 Hz (1800 "
+         "1/min) on average. There are lines of the outer ring at 107.7 Hz, resolved to 0.25 Hz: 83 % sure."),
+        (60, {"parts": (OUTER,), "speed_is": "unconfirmed"}, "By the tacho the shaft turns at 30 Hz (1800 "
+         "1/min) on average, if it gives 60 pulses in a turn. If it does, there are lines of the outer ring "
+         "at 107.7 Hz, resolved to 0.25 Hz: 83 % sure."),
+        (1, {"speed_is": "unconfirmed"}, "By the tacho the shaft turns at 30 Hz (1800 1/min) on average, if "
+         "it gives 1 pulse in a turn. No lines of rings or balls stand out: no sign of a fault if it does, "
+         "83 % sure."),
+        (0, {"speed_is": "unconfirmed", "others": (15.0, 60.0)}, "By the tacho the shaft turns at 30 Hz "
+         "(1800 1/min) on average. No lines of rings or balls stand out: no sign of a fault, 83 % sure."),
+        (2, {"speed_is": "unconfirmed", "others": (15.0, 60.0)}, "By the tacho the shaft turns at 30 Hz "
+         "(1800 1/min) on average, if it gives 2 pulses in a turn; a shaft at 15 Hz (900 1/min) or 60 Hz "
+         "(3600 1/min) would have its lines, too. No lines of rings or balls stand out: no sign of a fault, "
+         "83 % sure."),
+        (2, {"parts": (OUTER,), "speed_is": "contradicted", "told": 15.0, "blows": 107.7}, "The line of the "
+         "shaft is not at 15 Hz (900 1/min), as the tacho says, but at 30 Hz (1800 1/min), as with 1 pulse "
+         "in a turn: does the tacho give 2 pulses in a turn, and is it on this shaft? At that speed there "
+         "are lines of the outer ring at 107.7 Hz, resolved to 0.25 Hz: 83 % sure."),
+        (2, {"parts": (OUTER,), "speed_is": "contradicted", "told": 33.0, "blows": 107.7}, "The line of the "
+         "shaft is not at 33 Hz (1980 1/min), as the tacho says, but at 30 Hz (1800 1/min): does the tacho "
+         "give 2 pulses in a turn, and is it on this shaft? At that speed there are lines of the outer ring "
+         "at 107.7 Hz, resolved to 0.25 Hz: 83 % sure."),
+        (0, {"speed_is": "unconfirmed", "blows": 35.9}, "By the tacho the shaft turns at 30 Hz (1800 1/min) "
+         "on average; its line is not found there: is the speed beside the signal that of this shaft, and "
+         "are its unit and the rate right? Blows at 35.9 Hz, resolved to 0.25 Hz, are those of no part at "
+         "this speed: 83 % sure."),
+        (2, {"blows": 54.7}, "By the tacho the shaft turns at 30 Hz (1800 1/min) on average; its lines are "
+         "there, but do not explain all blows: does the tacho give 2 pulses in a turn, and is it on this "
+         "shaft? Blows at 54.7 Hz, resolved to 0.25 Hz, are those of no part at this speed: 83 % sure."),
+        (2, {"parts": (OUTER,), "fastest": 20.0}, "Hardly any bearing of this size turns at 30 Hz (1800 "
+         "1/min), as the tacho says: does the tacho give 2 pulses in a turn, and is it on this shaft? By the "
+         "tacho the shaft turns at 30 Hz (1800 1/min) on average. There are lines of the outer ring at 107.7 "
+         "Hz, resolved to 0.25 Hz: 50 % sure."),
+        (0, {"speed_is": "unconfirmed", "record": SimpleNamespace(duration=0.15)}, "The record of 0.15 s "
+         "holds 4.5 turns of the shaft at 30 Hz (1800 1/min), as the tacho says: too short to tell whether "
+         "there is a fault. Record 6 turns, 0.2 s, or more."),
+    ],
+)  # fmt: skip
+def test_a_speed_by_a_tacho_is_said_to_be_and_what_is_doubted_are_its_pulses(pulses, change, said):
+    assert diagnosis_sentence(replace(SOUND, tacho=Tacho(pulses), **change)) == said
 
 
 def test_confidence_rises_with_what_speaks_for_it_and_is_never_all_or_nothing():

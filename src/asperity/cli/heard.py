@@ -13,7 +13,7 @@ import numpy as np
 from asperity import diagnostics
 from asperity.arguments import Array, require
 from asperity.case.loaded_bearing import LoadKeys
-from asperity.diagnostics import Diagnosis, LineFamily, Spectrum, Tone
+from asperity.diagnostics import Diagnosis, LineFamily, Spectrum, Tacho, Tone
 from asperity.diagnostics.verdict import faint_lines
 from asperity.errors import InputError
 from asperity.progress import Progress, counted, progress_bar
@@ -40,6 +40,8 @@ SAME_RATE = 1e-3
 """Share by which sampling rates of files may differ, as times were printed."""
 MANY = 1_000_000
 """Samples of all signals from which on it takes seconds, and progress is shown."""
+SMEARED = 1.01
+"""Factor of speeds from which on it is said that resonances are smeared."""
 SAME_SPEED = 0.01
 """Share by which speeds by the lines of files may differ that are told to be of one speed."""
 
@@ -128,6 +130,7 @@ def _judged(
     with progress_bar() as progress:
         signals, sampled = _read(files, rate, progress, array=array, column=column)
         turned: dict[str, Any] | None = None
+        given: Tacho | None = None
         if tacho is not None:
             beside = zip(files, signals.values(), strict=True)
             courses = [read_turned(*each, tacho, tacho_reads, array) for each in beside]
@@ -135,11 +138,12 @@ def _judged(
             signals = at_constant_speed(signals, courses, told)
             sampled = next(iter(signals.values())).rate
             turned = _turned(courses, told)
+            given = courses[0].tacho
         edges = _band(band, sampled)
         told_of = progress if sum(each.values.size for each in signals.values()) >= MANY else None
         judge = partial(
             diagnostics.diagnose_together, rate=sampled, tones=tones, speed=told, band=edges,
-            fastest=keys.bearing.fastest, element=keys.bearing.ELEMENT,
+            fastest=keys.bearing.fastest, element=keys.bearing.ELEMENT, tacho=given,
         )  # fmt: skip
         singles = _one_by_one(signals, judge, told_of)
         together = [signals[name] for name in singles] or list(signals.values())
@@ -158,10 +162,10 @@ def _turned(courses: Sequence[Turned], told: float) -> dict[str, Any]:
     slow, _, fast = np.transpose([each.speeds for each in courses])
     slowest, fastest = float(slow.min()), float(fast.max())
     span = f"{rounded(60.0 * slowest, 5)} to {rounded(60.0 * fastest, 5)} 1/min"
-    say(
-        f"Read over angle, by the tacho: {span}. Frequencies are those at {rounded(60.0 * told, 5)} 1/min; "
-        f"resonances are smeared by a factor of {rounded(fastest / slowest, 3)}."
-    )
+    factor = fastest / slowest
+    smeared = f"; resonances are smeared by a factor of {rounded(factor, 3)}" if factor >= SMEARED else ""
+    at = f"Frequencies are those at {rounded(60.0 * told, 5)} 1/min"
+    say(f"Read over angle, by the tacho: {span}. {at}{smeared}.")
     return {"slowest": slowest, "fastest": fastest, "at": told}
 
 
@@ -211,10 +215,11 @@ def _length(signals: Sequence[Recorded]) -> str:
 
 def _taken(diagnosis: Diagnosis) -> str:
     """In which pieces a signal is read, and which speed is taken."""
+    given = "as given" if diagnosis.tacho is None else "by the tacho"
     origin = {
         "confirmed": "by lines of the shaft",
-        "unconfirmed": f"as given{': lines of the shaft are not found' * (not diagnosis.others)}",
-        "contradicted": f"by what its lines fit, not {rounded(60.0 * diagnosis.told, 5)} 1/min as given",
+        "unconfirmed": f"{given}{': lines of the shaft are not found' * (not diagnosis.others)}",
+        "contradicted": f"by what its lines fit, not {rounded(60.0 * diagnosis.told, 5)} 1/min {given}",
     }[diagnosis.speed_is]
     pieces = diagnosis.record.pieces
     read = f", read in {pieces} pieces of {rounded(diagnosis.record.duration, 4)} s" if pieces > 1 else ""

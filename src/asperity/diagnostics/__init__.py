@@ -19,6 +19,7 @@ from asperity.diagnostics.envelopes import (
 from asperity.diagnostics.hypotheses import Hypothesis, Tone
 from asperity.diagnostics.kurtogram import Kurtogram, impulsive_band, kurtogram
 from asperity.diagnostics.lines import LineFamily, clear_families, explained_lines, find_lines
+from asperity.diagnostics.tacho import Tacho
 from asperity.diagnostics.verdict import diagnosis_sentence
 
 __all__ = [
@@ -28,6 +29,7 @@ __all__ = [
     "Kurtogram",
     "LineFamily",
     "Spectrum",
+    "Tacho",
     "Tone",
     "amplitude_spectrum",
     "band_deviations",

@@ -35,8 +35,9 @@ from asperity.diagnostics.shaft import (
     once_in_a_turn,
     shaft_near,
 )
+from asperity.diagnostics.tacho import Tacho
 from asperity.progress import Progress, counted
-from asperity.written_numbers import rounded
+from asperity.written_numbers import capital, rounded
 
 TOLD = 15.0
 """Score that the speed given is worth: what is told is more often right than not."""
@@ -133,6 +134,8 @@ class Diagnosis:
         Speed beyond which hardly any such bearing runs, Hz.
     element : str
         What rolls in the bearing, ``"ball"`` or ``"roller"``.
+    tacho : Tacho or None
+        What gave the speed; None of one that was told.
     """
 
     told: float
@@ -154,6 +157,7 @@ class Diagnosis:
     by_chance: float = 0.0
     tones_alone: tuple[float, ...] = ()
     once_in_a_turn: bool = False
+    tacho: Tacho | None = None
 
     def name(self, part: str) -> str:
         """A part, as people say it."""
@@ -216,6 +220,7 @@ def diagnose(
     *,
     band: tuple[float, float] | None = None,
     fastest: float = math.inf,
+    tacho: Tacho | None = None,
     progress: Progress | None = None,
 ) -> Diagnosis:
     """Find which part of a bearing is struck in a record, at which speed, and how sure that is.
@@ -235,6 +240,8 @@ def diagnose(
     fastest : float, optional
         Speed beyond which hardly any such bearing runs, Hz, as of `BallBearing.fastest`: beyond it that is
         said first, and nothing is surer than even.
+    tacho : Tacho, optional
+        What gave the speed, by which the signal was resampled over angle, for sentences.
     progress : callable, optional
         Called as ``progress(done, total, message)``.
 
@@ -258,7 +265,9 @@ def diagnose(
     wrong speed or sampling rate, and a second ring beside the right one, whose lines f_i = Z f_r − f_o are
     those of the right one and the shaft's.
     """
-    return diagnose_together([signal], rate, tones, speed, band=band, fastest=fastest, progress=progress)
+    return diagnose_together(
+        [signal], rate, tones, speed, band=band, fastest=fastest, tacho=tacho, progress=progress
+    )
 
 
 def diagnose_together(
@@ -270,6 +279,7 @@ def diagnose_together(
     band: tuple[float, float] | None = None,
     fastest: float = math.inf,
     element: str = "ball",
+    tacho: Tacho | None = None,
     progress: Progress | None = None,
 ) -> Diagnosis:
     """Find which part of a bearing is struck by several records of it, at one speed and sampling rate.
@@ -280,7 +290,7 @@ def diagnose_together(
         As of `diagnose`: files of one measurement, or several sensors. Their spectra are averaged, each by
         its own level, over pieces of one length; a signal with less than half the length of the longest is
         left out.
-    rate, tones, speed, band, fastest, progress
+    rate, tones, speed, band, fastest, tacho, progress
         As of `diagnose`.
     element : {"ball", "roller"}
         What rolls in the bearing, for sentences.
@@ -299,7 +309,8 @@ def diagnose_together(
     blows = f"the blows of the {part_name(part, element)} at {rounded(tone.order * told, 4)} Hz"
     received = f"{rounded(rate, 6)} Hz"
     allowed = f"more than {rounded(2.0 * tone.order * told, 4)} Hz, to hold {blows}"
-    remedy = f"Is the speed, {rounded(told, 5)} Hz, in 1/min? Otherwise sample faster."
+    asked = f"Is the speed, {rounded(told, 5)} Hz, in 1/min?" if tacho is None else capital(tacho.question)
+    remedy = f"{asked} Otherwise sample faster."
     require(rate > 2.0 * tone.order * told, "sampling rate of the signal", received, allowed, remedy)
     needed = 2.0 * LOWEST_PLACE / (tone.order * told)
     lines = f"the lines of the {part_name(part, element)} at {rounded(tone.order * told, 4)} Hz"
@@ -323,7 +334,7 @@ def diagnose_together(
     else:
         found = decided(record, record.read(tones, told), tones, told)
     doubts = dict.fromkeys(each for recording in recordings for each in recording.doubts)
-    return replace(found, doubts=tuple(doubts), fastest=fastest, element=element)
+    return replace(found, doubts=tuple(doubts), fastest=fastest, element=element, tacho=tacho)
 
 
 def _longest_piece(samples_of_turn: float) -> float:

@@ -5,13 +5,13 @@ import math
 
 from asperity.diagnostics.decision import RESOLVED, Diagnosis
 from asperity.diagnostics.hypotheses import Hypothesis
-from asperity.written_numbers import rounded
+from asperity.diagnostics.tacho import Tacho
+from asperity.written_numbers import capital, rounded
 
 ASKED = "is the speed or the sampling rate wrong?"
 ONCE_IN_A_TURN = "Blows come with the turns of the shaft, as of a rub; fainter ones may hide behind them."
 TWICE_IN_A_TURN = "A shaft at {} that rubs would have these lines, too."
 OF_BALLS = "How sure rests on records of ball bearings."
-BEYOND = "Hardly any bearing of this size turns at {}, as told: is the speed in 1/min?"
 
 
 def diagnosis_sentence(found: Diagnosis, known: str | None = None) -> str:
@@ -29,7 +29,7 @@ def diagnosis_sentence(found: Diagnosis, known: str | None = None) -> str:
     str
         What is not confirmed of the speed comes first; each verdict has its confidence.
     """
-    words = [BEYOND.format(turns(found.told))] if found.beyond_belief else []
+    words = [_beyond_belief(found)] if found.beyond_belief else []
     if found.tones_alone:
         words.append(_tones_alone(found))
     else:
@@ -100,17 +100,31 @@ def _tones_alone(found: Diagnosis) -> str:
     return f"The record holds the {lines} alone, {beside}: it says nothing of rings and {found.element}s."
 
 
+def _beyond_belief(found: Diagnosis) -> str:
+    """What is said of a speed at which hardly any such bearing runs."""
+    asked = "is the speed in 1/min?" if found.tacho is None else found.tacho.question
+    return f"Hardly any bearing of this size turns at {turns(found.told)}, {_by(found)}: {asked}"
+
+
+def _by(found: Diagnosis) -> str:
+    """What the speed is by."""
+    return "as told" if found.tacho is None else "as the tacho says"
+
+
 def _too_short(found: Diagnosis) -> str:
     """What is said of a record in which no part is found, nor could be."""
     held = (
         f"The record of {rounded(found.record.duration)} s holds {rounded(found.turns, 2)} turns of the shaft"
     )
     needed = f"{RESOLVED:.0f} turns, {rounded(RESOLVED / found.told, 2)} s, or more"
-    return f"{held} at {turns(found.told)}: too short to tell whether there is a fault. Record {needed}."
+    by = "" if found.tacho is None else f", {_by(found)}"
+    return f"{held} at {turns(found.told)}{by}: too short to tell whether there is a fault. Record {needed}."
 
 
 def _of_speed(found: Diagnosis) -> list[str]:
-    """What is said of the speed where its lines are not where it says."""
+    """What is said of the speed where its lines are not where it says, and of one by a tacho."""
+    if found.tacho is not None:
+        return _of_tacho(found, found.tacho)
     if found.speed_is == "contradicted":
         where = f"not at {turns(found.told)}, as told, but at {turns(found.speed)}"
         return [f"The line of the shaft is {where}: {ASKED}"]
@@ -125,19 +139,48 @@ def _of_speed(found: Diagnosis) -> list[str]:
         line = f"for the line of the shaft at {turns(found.told)}, {needed}"
         return [f"{short} {line}: the speed is not confirmed."]
     if found.others and not found.blows:
-        nearest = sorted(found.others, key=lambda each: abs(math.log(each / found.told)))[:2]
-        others = " or ".join(turns(each) for each in sorted(nearest))
-        return [f"Lines of the shaft are at {turns(found.told)}; a shaft at {others} would have them, too."]
+        return [f"Lines of the shaft are at {turns(found.told)}; {_others(found)} would have them, too."]
     missed = f"The line of the shaft is not found at {turns(found.told)}"
     if found.blows:
         return [f"{missed}: {ASKED}"]
     return [f"{missed}: the speed is not confirmed."]
 
 
+def _of_tacho(found: Diagnosis, tacho: Tacho) -> list[str]:
+    """What is said of a speed by a tacho, and on which condition where lines do not confirm it."""
+    if found.speed_is == "contradicted":
+        where = f"not at {turns(found.told)}, {_by(found)}, but at {turns(found.speed)}"
+        pulses = tacho.otherwise(found.speed / found.told)
+        return [f"The line of the shaft is {where}{pulses}: {tacho.question}"]
+    here = f"By the tacho the shaft turns at {turns(found.told)} on average"
+    if found.blows:
+        lines = "its lines are there, but do not explain all blows"
+        lines = lines if found.speed_is == "confirmed" else "its line is not found there"
+        return [f"{here}; {lines}: {tacho.question}"]
+    if found.speed_is == "confirmed" or not tacho.condition:
+        return [f"{here}."]
+    too = f"; {_others(found)} would have its lines, too" if found.others else ""
+    return [f"{here}, {tacho.condition}{too}."]
+
+
+def _others(found: Diagnosis) -> str:
+    """The two nearest shafts that have the same lines."""
+    nearest = sorted(found.others, key=lambda each: abs(math.log(each / found.told)))[:2]
+    return f"a shaft at {' or '.join(turns(each) for each in sorted(nearest))}"
+
+
+def _condition(found: Diagnosis) -> str:
+    """On which condition lines at a speed that is not confirmed are those of a part."""
+    if found.tacho is None:
+        return "if it is right"
+    return "if it does" if found.tacho.pulses else ""
+
+
 def _of_parts(found: Diagnosis) -> str:
     """What is said of the parts, and how sure that is."""
     resolved = f"resolved to {rounded(found.resolution, 2)} Hz"
     sure = f"{100.0 * found.confidence:.0f} % sure{', by made signals' * found.by_made_signals}"
+    condition = _condition(found)
     if found.alike:
         both = " and the ".join(found.name(each.part) for each in (found.parts[0], *found.alike))
         lines = f"Lines at {_hertz(found.parts[0].blows, found)}, {resolved}"
@@ -150,7 +193,7 @@ def _of_parts(found: Diagnosis) -> str:
         )
         begin = {
             "confirmed": "There are",
-            "unconfirmed": "If it is right, there are",
+            "unconfirmed": capital(f"{condition}, there are".removeprefix(", ")),
             "contradicted": "At that speed there are",
         }[found.speed_is]
         foreign = ", or of another bearing" * (found.may_be_foreign and found.otherwise is None)
@@ -160,7 +203,7 @@ def _of_parts(found: Diagnosis) -> str:
             f"Blows at {_hertz(found.blows, found)}, {resolved}, are those of no part at this speed: {sure}."
         )
         return f"{blows}{_nearest(found)}"
-    condition = "" if found.speed_is == "confirmed" or found.others else " if it is right"
+    condition = "" if found.speed_is == "confirmed" or found.others else f" {condition}".rstrip()
     parts = f"rings or {found.element}s"
     hidden = f"{ONCE_IN_A_TURN} " if found.once_in_a_turn else ""
     return f"{hidden}No lines of {parts} stand out: no sign of a fault{condition}, {sure}."

@@ -10,11 +10,12 @@ import numpy as np
 from asperity.arguments import Array, require
 from asperity.case.table_headings import unit_of
 from asperity.diagnostics import orders
+from asperity.diagnostics.tacho import Tacho
 from asperity.errors import InputError
 from asperity.speeds import FEWEST_TURNS
 from asperity.studies.recorded import Recorded, read_beside
 from asperity.units import factor
-from asperity.written_numbers import count_of, rounded
+from asperity.written_numbers import capital, count_of, rounded
 
 READS = '"1/min", "Hz", or its pulses in a turn, as "1 pulse" or "60 pulses"'
 _PULSES = re.compile(r"\s*([0-9]{1,6})\s*pulses?\s*")
@@ -32,10 +33,13 @@ class Turned:
         At its samples; NaN before the first pulse of a tacho and after the last.
     rate : float
         Samples per second, Hz.
+    tacho : Tacho
+        What told it.
     """
 
     turns: Array
     rate: float
+    tacho: Tacho
 
     @property
     def speeds(self) -> tuple[float, float, float]:
@@ -45,7 +49,8 @@ class Turned:
         whole = float(turns[-1] - turns[0])
         received = f"{rounded(whole)} turns"
         least = FEWEST_TURNS
-        require(whole >= least, "tacho", received, f"at least {least:g} turns", "Record longer.")
+        remedy = f"{capital(self.tacho.question)} Otherwise record longer."
+        require(whole >= least, "tacho", received, f"at least {least:g} turns", remedy)
         times = np.interp(np.arange(turns[0], turns[-1]), turns, known / self.rate)
         each = 1.0 / np.diff(times)
         mean = whole * self.rate / float(known[-1] - known[0])
@@ -66,7 +71,8 @@ def read_turned(
     require(unit, "--tacho-reads", "nothing, and no unit above the column", READS)
     try:
         if pulses := _PULSES.fullmatch(unit):
-            return Turned(orders.turns_of_pulses(values, float(pulses[1])), signal.rate)
+            turns = orders.turns_of_pulses(values, float(pulses[1]))
+            return Turned(turns, signal.rate, Tacho(int(pulses[1])))
         scale = factor(unit, "Hz")
     except InputError as error:
         if error.what == "unit":
@@ -76,7 +82,7 @@ def read_turned(
     require(known.any(), f"tacho in {path.name}", "no number", "speeds")
     speeds = scale * np.interp(np.arange(values.size), np.flatnonzero(known), values[known])
     try:
-        return Turned(orders.turns_of(np.abs(speeds), signal.rate), signal.rate)
+        return Turned(orders.turns_of(np.abs(speeds), signal.rate), signal.rate, Tacho())
     except InputError as error:
         remedy = "Cut off where it stands."
         raise InputError(f"tacho in {path.name}", error.received, "speeds above zero", remedy) from None
