@@ -449,6 +449,13 @@ def name_of_numbers(youngs_modulus: float) -> str:
     return f"{youngs_modulus / 1e9:.4g} GPa"
 
 
+def in_its_unit(value: object, kind: ValueKind) -> str:
+    """A value as it would be written in TOML, in messages: a quantity with its unit."""
+    if isinstance(kind, Quantity) and isinstance(value, int | float):
+        return written(value, kind.dimension, kind.dimension)
+    return shown(value)
+
+
 def outside(name: str, value: object, kind: ValueKind, within: str) -> Iterator[InputError]:
     """Error about a number out of its limits; zero, infinity and NaN, where they may stand, may."""
     if not within or not isinstance(value, int | float) or value in (0.0, math.inf) or value != value:
@@ -458,7 +465,7 @@ def outside(name: str, value: object, kind: ValueKind, within: str) -> Iterator[
     least = quantity(low, unit) if unit else float(low)
     most = quantity(high, unit) if unit else float(high)
     if not least <= value <= most:
-        received = written(value, unit, unit) if unit else f"{value:.4g}"
+        received = in_its_unit(value, kind) if unit else f"{value:.4g}"
         yield InputError(name, received, f"{low} to {high}", f"{reason[0].upper()}{reason[1:]}.")
 
 

@@ -40,7 +40,7 @@ test_what_cannot_be_is_told = refusals(
     ({"duration": "10 ms"}, r"duration: received 10 ms; allowed: at least .* slowest tone comes 5 times"),
     ({"duration": "1000 s", "time_step": "1 us"}, r"received 9.2·10⁹ time steps of balls; allowed: at most"),
     ({"shaft": {"radial_stiffness": "0 N/m"}}, r"shaft\.radial_stiffness: received 0 N/m of \[shaft\]"),
-    ({"housing": {"width": "10 mm"}}, r"housing\.width: received 0.01; allowed: only together with lobes"),
+    ({"housing": {"width": "10 mm"}}, r"housing\.width: received 0.01 m; allowed: only together with lobes"),
     ({"inner_raceway": {"waves": [3]}}, r"inner_raceway\.waves: received 1 wave and 0 amplitudes"),
     ({"fault": {"length": "0.2 mm"}}, r'fault\.on: received nothing; allowed: "outer", "inner", "ball"'),
     (

@@ -61,7 +61,7 @@ ball: [surface] line = "line.csv" | spectrum = "iso3095" → surface: received b
 ball: [surface] file = "map.npy" | height_unit = "s" → a unit of length, as "um"
 ball: [surface] file = "map.npy" | fill = "yes" → true or false
 ball: [surface] file = "map.npy" | direction = 30 → Add unit and quotes: "30 rad" if it is in SI units (rad)
-ball: [surface] rms = "1 um" | direction = "90 deg" → surface.direction: received 1.5707963267948966;
+ball: [surface] rms = "1 um" | direction = "90 deg" → surface.direction: received 1.5708 rad;
 ball: [surface] rms = "1 um" | longest = "10 um" | shortest = "16 um" → surface.longest: received 10 um with
 ball: [surface] rms = "1 um" | shortest = "10 um" | [contact] spacing = "8 um" → shortest: received 10 um on
 ball: [surface] spectrum = "iso3095" | [contact] linearise = "rough" → contact.linearise: received "rough"

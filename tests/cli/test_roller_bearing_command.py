@@ -123,7 +123,14 @@ def test_a_data_sheet_is_of_rollers(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("stiffness", "told"), [("", "rigid"), ('rib_stiffness = "300 MN/m"', "a spring of 300 MN/m")]
+    ("stiffness", "told"),
+    [
+        ("", "rigid"),
+        (
+            'rib_stiffness = "300 MN/m"\nrib_height = "1 mm"',
+            "a spring of 300 MN/m, 1 mm above the inner raceway",
+        ),
+    ],
 )
 def test_a_taper_and_its_rib_are_told(tapered, tmp_path, stiffness, told):
     (path := Path(tapered)).write_text(f'{TAPERED}taper = "4.2 deg"\n{stiffness}\n')

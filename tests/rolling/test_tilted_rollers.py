@@ -15,8 +15,10 @@ from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.texture import StateTexture
 from asperity.rolling.bearing import BearingRings, roll_bearing
 from asperity.scenarios.prepared_bearing import expected, prepare_bearing
+from asperity.scenes.along_rollers import along_group
 from asperity.scenes.computed_bearing import compute_bearing
 from asperity.scenes.figures.bearing import ball_contacts_table
+from asperity.schema.bearing import RING_TILT, TILT_MOMENT
 from asperity.speeds import SpeedCourse
 from asperity.structures.ring import Ring
 from refusals import refusals
@@ -295,13 +297,17 @@ def test_a_case_tilts_as_far_as_its_shaft_gives_way():
     tilt = float(tilts.mean())
     assert case.tilts == {"tilt": tilt, "rotating_tilt": 0.0}
     told = dict(expected(prepare_bearing(case))[0])["tilt of the inner ring"]
-    given = f"{1e3 * tilt:.4g} mrad of 1 mrad, as the shaft gives way"
+    given = f"{1e3 * tilt:.4g} mrad, as the shaft gives way from 1 mrad"
     assert told == f"{given}; {moments.mean():.3g} N m hold it in the plane of the load"
     runs = []
     for each in (GIVING, {"tilt": f"{tilt!r} rad"}):
         short = as_case(CASE | {"duration": "10 ms", "settling": "1 ms"} | each)
-        (run,) = compute_bearing(prepare_bearing(short), lambda *_: None).rolled.values()
+        computed = compute_bearing(prepare_bearing(short), lambda *_: None)
+        (run,) = computed.rolled.values()
         runs.append(run.inner_force)
+        laid_out = along_group(computed)
+        assert laid_out[RING_TILT] == pytest.approx(tilt)
+        assert laid_out[TILT_MOMENT] == pytest.approx(moments.mean(), rel=1e-4)
     np.testing.assert_allclose(*runs, atol=1e-6)
 
 

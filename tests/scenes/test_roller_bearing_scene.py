@@ -251,6 +251,12 @@ def test_what_lies_along_the_heaviest_roller_is_told_in_words_of_rollers(tree):
         )
     assert np.all(np.abs(found.along_roller) < 0.5 * length)
     assert found.attrs["element"] == "roller"
+    assert found.attrs["ring_tilt"] == 0.0
+    assert "tilt" not in str(along_roller.drawn(tree))
+    tilted = tree.copy()
+    tilted["bearing"].attrs |= {"ring_tilt": -2.74e-3, "tilt_moment": 5.483}
+    told = "the pressure there is higher. The inner ring is held at a tilt of -2.74 mrad by 5.483 N m."
+    assert told in str(along_roller.drawn(tilted))
     panel = along_roller.drawn(tree).chart.panels[0]
     assert panel.marks[0].y.max() == pytest.approx(float(found.line_pressure.max()) / 1e9)
     assert ball_contacts_table(tree).title == "Contacts of the rollers"

@@ -225,8 +225,11 @@ def refused(**changes):
 
 
 test_sections_that_cannot_be_are_refused = refusals(
-    (refused(web_height=0.08), r"web_height: received 0.08; allowed: only together with web_thickness"),
-    (refused(web_thickness=math.inf, head_centroid=0.09), "head_centroid: received 0.09; allowed: only tog"),
+    (refused(web_height=0.08), r"web_height: received 0.08 m; allowed: only together with web_thickness"),
+    (
+        refused(web_thickness=math.inf, head_centroid=0.09),
+        "head_centroid: received 0.09 m; allowed: only together with web_thickness",
+    ),
     (refused(web_thickness=-1e-3), 'web_thickness of the lateral track: received -0.001; .* or "inf"'),
     (
         refused(web_thickness=0.0165, head_centroid=0.06),

@@ -19,7 +19,7 @@ from asperity import __version__, extensions
 from asperity.arguments import nearest, shown
 from asperity.case import documented
 from asperity.errors import CaseError, InputError
-from asperity.parameters import FROM_PYTHON, Key, Origin, Problems, outside
+from asperity.parameters import FROM_PYTHON, Key, Origin, Problems, ValueKind, in_its_unit, outside
 from asperity.reference.materials import Material
 from asperity.speeds import SpeedCourse
 from asperity.store import content_key
@@ -213,7 +213,7 @@ class Section:
         if implausible:
             return implausible
         self._choose()
-        return [*self._lonely(), *self._both_given(), *self.problems()]
+        return [*self._lonely(), *self._both_given()] or [*self.problems()]
 
     @classmethod
     def prepared(cls, given: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -232,7 +232,8 @@ class Section:
             if not self.is_active(name):
                 companion, _, value = self.keys[name].goes_with.partition("=")
                 wanted = f'{companion} = "{value}"' if value else companion
-                yield InputError(name, _shown(getattr(self, name)), f"only together with {wanted}")
+                received = _shown(getattr(self, name), self.keys[name].one)
+                yield InputError(name, received, f"only together with {wanted}")
 
     def _both_given(self) -> Iterator[InputError]:
         for pair in self.ALTERNATIVES:
@@ -359,10 +360,10 @@ def _told(error: InputError) -> str:
     return str(error if error.what else _below("the case", error))
 
 
-def _shown(value: object) -> str:
+def _shown(value: object, kind: ValueKind) -> str:
     if holds_memory(value):
         return described_value(value)
-    return shown(str(value) if isinstance(value, Path) else value)
+    return in_its_unit(str(value) if isinstance(value, Path) else value, kind)
 
 
 # --- what values say

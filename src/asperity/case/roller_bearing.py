@@ -128,7 +128,7 @@ class RollerBearingUnderLoad(BearingUnderLoad):
     laws: tuple[str, ...] = key(
         ListOf(LAW, least=1, once=True),
         [BY_SLICES],
-        "laws of the contact force: areal, whose force on rollers is that of the slices of ISO/TS 16281",
+        "laws of the contact force: areal alone of those built in, by the slices of ISO/TS 16281",
     )
     time_step: float | None = optional(
         DURATION,

@@ -256,7 +256,7 @@ def _tilt_in_words(case: BearingUnderLoad) -> str:
     turning = f"{told[0]} and {told[1]} that turns" if case.tilts["rotating_tilt"] else told[0]
     rollers: Any = case.static
     if case.held.get("tilt_stiffness"):
-        turning += f" of {rounded(1e3 * case.held['tilt'], 4)} mrad, as the shaft gives way"
+        turning += f", as the shaft gives way from {rounded(1e3 * case.held['tilt'], 4)} mrad"
     return f"{turning}; {rounded(rollers.moment[:, 0].mean())} N m hold it in the plane of the load"
 
 

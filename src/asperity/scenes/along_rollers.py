@@ -23,6 +23,8 @@ def along_group(computed: ComputedBearing) -> Values:
         bearing.ALONG_ROLLER: of.inner_contact.places,
         bearing.LINE_LOAD: loads,
         bearing.LINE_PRESSURE: pressures,
+        bearing.RING_TILT: found.tilt,
+        bearing.TILT_MOMENT: float(found.moment[:, 0].mean()),
     }
 
 

@@ -153,6 +153,13 @@ ALONG_ROLLER, LINE_LOAD, LINE_PRESSURE = (
         ("line_pressure(ring, along_roller)", "Pa", "pressure of the slices of that roller"),
     )
 )
+RING_TILT, TILT_MOMENT = (
+    Attribute("bearing", name, units, meaning, condition=OF_ROLLERS)
+    for name, units, meaning in (
+        ("ring_tilt", "rad", "static tilt of the inner ring in the plane of the load, mean over the cage"),
+        ("tilt_moment", "N m", "static moment that holds it there"),
+    )
+)
 
 # --- what turns how fast
 

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from asperity.arguments import positive, shown
+from asperity.arguments import positive
 from asperity.errors import InputError
 from asperity.parameters import (
     LENGTH,
@@ -13,6 +13,7 @@ from asperity.parameters import (
     Number,
     Quantity,
     checked_parameters,
+    in_its_unit,
     keys_of,
     optional_parameter,
     parameter,
@@ -120,7 +121,8 @@ class LateralParameters:
         for name, key in keys_of(type(self), "").items():
             given = getattr(self, name) != getattr(type(self), name)
             if key.goes_with and given and getattr(self, key.goes_with) in (None, math.inf):
-                raise InputError(name, shown(getattr(self, name)), f"only together with {key.goes_with}")
+                received = in_its_unit(getattr(self, name), key.kind)
+                raise InputError(name, received, f"only together with {key.goes_with}")
 
     @property
     def web(self) -> float | None:

@@ -301,10 +301,11 @@ class RollerBearing(RollingBearing):
 
     @property
     def rib(self) -> str:
-        """What holds tapered rollers along their axes, in words."""
-        if self.rib_stiffness is None:
-            return "rigid"
-        return f"a spring of {written(self.rib_stiffness, 'N/m', 'MN/m')}"
+        """What holds tapered rollers along their axes, and at which height, in words."""
+        stiffness = self.rib_stiffness
+        told = "rigid" if stiffness is None else f"a spring of {written(stiffness, 'N/m', 'MN/m')}"
+        height = self.rib_height
+        return told if height is None else f"{told}, {written(height, 'm', 'mm')} above the inner raceway"
 
     def rib_force(self, inner: Array, outer: Array, lift: ArrayLike = 0.0) -> Array:
         """Force of the rib on tapered rollers along their axis.

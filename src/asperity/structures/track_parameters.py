@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from asperity.arguments import Array, not_negative, require, shown, whole
+from asperity.arguments import Array, not_negative, require, whole
 from asperity.errors import InputError
 from asperity.parameters import (
     DAMPING,
@@ -18,6 +18,7 @@ from asperity.parameters import (
     Number,
     Quantity,
     checked_parameters,
+    in_its_unit,
     keys_of,
     optional_parameter,
     parameter,
@@ -271,7 +272,8 @@ class TrackParameters:
         for name, key in keys_of(type(self), "").items():
             given = getattr(self, name) != getattr(type(self), name, 0.0)
             if key.goes_with and given and getattr(self, key.goes_with) is None:
-                raise InputError(name, shown(getattr(self, name)), f"only together with {key.goes_with}")
+                received = in_its_unit(getattr(self, name), key.kind)
+                raise InputError(name, received, f"only together with {key.goes_with}")
         for element in LAYERS:
             viscous, factor = (getattr(self, f"{element}_{each}") for each in ("damping", "loss_factor"))
             if viscous is not None and factor is not None:

@@ -207,8 +207,16 @@ def along_roller(tree: DataTree, lines: Lines) -> chart.Drawn:
     yield chart.Panel(chart.Axis("place along the roller / mm"), chart.Axis("pressure / GPa", low=0.0), drawn)
     yield (
         "Hertz's pressure on the middle line of each slice, at rest. Slices know no edge: where an end "
-        "carries that does not fall back, the pressure there is higher."
+        f"carries that does not fall back, the pressure there is higher.{_tilted(tree)}"
     )
+
+
+def _tilted(tree: DataTree) -> str:
+    """How far the inner ring of rollers is tilted at rest, and what holds it; empty where it is not."""
+    tilt, moment = data.number(tree, bearing.RING_TILT), data.number(tree, bearing.TILT_MOMENT)
+    if not tilt or moment is None:
+        return ""
+    return f" The inner ring is held at a tilt of {rounded(1e3 * tilt, 4)} mrad by {rounded(moment, 4)} N m."
 
 
 @figure(
