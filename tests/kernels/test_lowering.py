@@ -14,6 +14,10 @@ from asperity.kernels.lowering import assigned_once, leave_out_unused
 from asperity.kernels.options import CALLED, INNER, LOOP, compiled
 
 
+GREATEST = np.uint64(2**64 - 1)
+"""Of as many bits as -1, which it is as a number with a sign."""
+
+
 class Two(NamedTuple):
     """What kernels are called with."""
 
@@ -99,6 +103,10 @@ def of_another_type(a, b, k):
     a[np.int8(-1)] = b[np.int32(-1), 0] + (k > 1)
 
 
+def from_the_end_by_a_constant(a, b, k):
+    a[np.int64(GREATEST)] = b[np.int64(GREATEST), k] + a[0]
+
+
 def of_a_tuple(a, b, k):
     at = (k, k - 3)
     pair = (a[k], b[at])
@@ -132,7 +140,7 @@ def of_rows_of_rows(a, b, k):
 
 FUNCTIONS = [
     from_both_ends, of_a_row, assigned_in_branches, carried_over, until_broken, exchanged, of_another_type,
-    of_a_tuple, over_ranges,
+    from_the_end_by_a_constant, of_a_tuple, over_ranges,
 ]  # fmt: skip
 LAID_OUT = {
     "in rows": lambda b: b.copy(),

@@ -212,7 +212,7 @@ class LeanLower(Lower):
         if not kind.signed:
             return self.context.cast(builder, index, kind, types.uintp)
         step = self.context.cast(builder, index, kind, types.intp)
-        if isinstance(step, Constant) and step.constant >= 0:
+        if isinstance(step, Constant) and 0 <= step.constant <= kind.maxval:  # -1 may be written 2**64 - 1
             return step
         zero = Constant(IntType(step.type.width), 0)
         return builder.select(builder.icmp_signed("<", step, zero), builder.add(step, size), step)
