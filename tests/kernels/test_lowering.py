@@ -13,7 +13,6 @@ from asperity.kernels import options
 from asperity.kernels.lowering import assigned_once, leave_out_unused
 from asperity.kernels.options import CALLED, INNER, LOOP, compiled
 
-
 GREATEST = np.uint64(2**64 - 1)
 """Of as many bits as -1, which it is as a number with a sign."""
 
@@ -138,9 +137,28 @@ def of_rows_of_rows(a, b, k):
             rows[0][j] = rows[-1][1 + j] * 2.0
 
 
+@compiled(**CALLED)
+def refused_below(x, k):
+    if x < 0.0:
+        raise ValueError("less than nothing")
+    return x + k
+
+
+def through_exceptions(a, b, k):
+    """Jumps from the middle of what stands in `try`."""
+    for i in range(len(a)):
+        before = a[i]
+        try:
+            x = refused_below(before, k)
+            after = 3.0 * x
+            a[i] = after - refused_below(b[i % 4, k], k)
+        except Exception:
+            a[i] = before - 1.0
+
+
 FUNCTIONS = [
     from_both_ends, of_a_row, assigned_in_branches, carried_over, until_broken, exchanged, of_another_type,
-    from_the_end_by_a_constant, of_a_tuple, over_ranges,
+    from_the_end_by_a_constant, of_a_tuple, over_ranges, through_exceptions,
 ]  # fmt: skip
 LAID_OUT = {
     "in rows": lambda b: b.copy(),
@@ -185,28 +203,71 @@ def test_numbers_of_all_types_are_read_and_written():
         assert x[1, 0, 1] == 1
 
 
+def put_at(a, i):
+    a[i] = 1.0
+
+
+def first_from_last(records):
+    values = records.value
+    values[0] = values[-1]
+
+
+def from_one_to_the_next(x):
+    before = x[0]
+    for i in range(1, len(x)):
+        now = x[i]
+        yield now - before
+        before = now
+
+
+def test_what_is_left_to_numba_computes_the_same():
+    x = np.array([1.0, 4.0, 2.0])
+    assert list(compiled(_nrt=False)(from_one_to_the_next)(x)) == [3.0, -2.0]
+
+
+def test_what_lies_beyond_an_array_is_refused_where_numba_is_told_to_look(monkeypatch):
+    monkeypatch.setattr(numba.config, "BOUNDSCHECK", 1)
+    a = np.ones(5)
+    for index in (5, -6):
+        with pytest.raises(IndexError, match="out of bounds"):
+            compiled(_nrt=False)(lambda a, i: a[i])(a, index)
+        with pytest.raises(IndexError, match="out of bounds"):
+            compiled(_nrt=False)(put_at)(a, index)
+
+
+@pytest.mark.skipif(options.PLAIN, reason="numba lacks what this needs")
+def test_items_that_are_not_aligned_are_not_taken_to_be():
+    for aligned, lines in ((True, 0), (False, 2)):
+        records = np.rec.array(np.zeros(3, np.dtype([("flag", bool), ("value", float)], align=aligned)))
+        records.value[-1] = 4.0
+        written = code_of(compiled(_nrt=False)(first_from_last), records)
+        assert sum(each.endswith("align 1") for each in written) == lines
+        assert records.value[0] == 4.0
+
+
 def test_parts_of_tuples_reach_the_kernels_that_are_called():
     two = Two(np.array([1.0, 2.0]), np.array([5.0, 9.0]))
     assert [of_parts_called(two, i) for i in (0, 1, -1)] == [4.0, 7.0, 7.0]
     assert [compiled(**LOOP)(of_parts)(two, i) for i in (0, 1, -1)] == [4.0, 7.0, 7.0]
 
 
-def lines_of(function, *arguments, **how):
+def code_of(function, *arguments):
     """Lines of intermediate code that LLVM gets for a function, without its entry."""
     written, add = [], CPUCodeLibrary.add_ir_module
     with pytest.MonkeyPatch.context() as patch:
         count = lambda library, module: (written.append(str(module)), add(library, module))[1]  # noqa: E731
         patch.setattr(CPUCodeLibrary, "add_ir_module", count)
         function(*arguments)
-    return min(len(each.splitlines()) for each in written if "define" in each and "wrapper" not in each)
+    codes = [each.splitlines() for each in written if "define" in each and "wrapper" not in each]
+    return min(codes, key=len)
 
 
 @pytest.mark.skipif(options.PLAIN, reason="numba lacks what this needs")
 @pytest.mark.parametrize("function", [from_both_ends, carried_over, of_a_row], ids=lambda each: each.__name__)
 def test_intermediate_code_is_half_of_what_numba_writes(function):
     arguments = np.ones(5), np.ones((4, 3)), 2
-    own = lines_of(compiled(_nrt=False)(function), *arguments)
-    assert own < 0.5 * lines_of(numba.njit(_nrt=False)(function), *arguments)
+    own = code_of(compiled(_nrt=False)(function), *arguments)
+    assert len(own) < 0.5 * len(code_of(numba.njit(_nrt=False)(function), *arguments))
 
 
 def test_what_a_choice_between_paths_or_a_call_takes_is_kept():
