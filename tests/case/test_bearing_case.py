@@ -284,3 +284,14 @@ def test_a_bearing_without_a_name_has_defaults_that_are_told():
     rows = {row["key"]: row["value"] for row in of_balls}
     assert rows["bearing.arch_angle"] == "grooves of one arc"
     assert rows["bearing.inner_conformity"] == "0.52"
+
+
+def test_a_key_without_its_companion_is_told_once_with_its_unit():
+    """Not again by the bearing that is made of it."""
+    rib = {"rib_stiffness": "300 MN/m", "rib_height": "1 mm"}
+    with pytest.raises(CaseError) as caught:
+        as_case({"kind": "roller-bearing", "radial": "1 kN", "bearing": {"name": "NU205"} | rib})
+    assert [str(each) for each in caught.value.errors] == [
+        "bearing.rib_height: received 0.001 m; allowed: only together with taper.",
+        "bearing.rib_stiffness: received 300 MN/m; allowed: only together with taper.",
+    ]

@@ -5,7 +5,9 @@ import json
 import numpy as np
 import pytest
 
+from asperity.diagnostics import Tacho, diagnose
 from asperity.diagnostics.orders import turns_of_pulses
+from asperity.structures.ball_bearing import BallBearing
 from command_line import call
 
 RATE = 12_000.0
@@ -62,6 +64,12 @@ def test_a_verdict_by_a_tacho_doubts_its_pulses_not_the_speed_told():
     assert "its line is not found there: does the tacho give 4 pulses in a turn, and is it on this" in said
 
 
+def test_what_gave_the_speed_is_told_in_python():
+    tones = BallBearing.named("6205").tones()
+    assert diagnose(struck(), RATE, tones, 29.0, tacho=Tacho(2)).tacho == Tacho(2)
+    assert diagnose(struck(), RATE, tones, 29.0).tacho is None
+
+
 def test_a_steady_speed_smears_nothing():
     np.savez("run.npz", acceleration=struck(), tacho=np.full(TIME.size, 29.0))
     words = (*GIVEN, "--array", "acceleration", "--tacho", "tacho", "--tacho-reads", "Hz")
@@ -97,6 +105,7 @@ COLUMN = ("--tacho", "tacho", "--tacho-reads")
 MISSED = pulses(1) * ~((TURNS > 19.8) & (TURNS < 20.8))
 REFUSED = [
     (SPEEDS, ("--tacho", "tacho"), "--tacho-reads: received nothing, and no unit above the column"),
+    (SPEEDS, (*COLUMN, "0 pulses"), "--tacho-reads: received '0 pulses'; allowed:"),
     (SPEEDS, (*COLUMN, "furlong"), 'allowed: "1/min", "Hz", or its pulses in a turn, as "1 pulse"'),
     (
         SPEEDS,

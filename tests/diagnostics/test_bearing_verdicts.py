@@ -382,6 +382,13 @@ def test_each_kind_of_verdict_says_the_speed_first_then_the_part_and_how_sure(ch
         (0, {"speed_is": "unconfirmed", "record": SimpleNamespace(duration=0.15)}, "The record of 0.15 s "
          "holds 4.5 turns of the shaft at 30 Hz (1800 1/min), as the tacho says: too short to tell whether "
          "there is a fault. Record 6 turns, 0.2 s, or more."),
+        (
+            0,
+            {"parts": (OUTER,), "speed_is": "contradicted", "told": 15.0, "blows": 107.7},
+            "The line of the shaft is not at 15 Hz (900 1/min), as the tacho says, but at 30 Hz (1800 1/min)"
+            ": is the speed beside the signal that of this shaft, and are its unit and the rate right? At "
+            "that speed there are lines of the outer ring at 107.7 Hz, resolved to 0.25 Hz: 83 % sure.",
+        ),
     ],
 )  # fmt: skip
 def test_a_speed_by_a_tacho_is_said_to_be_and_what_is_doubted_are_its_pulses(pulses, change, said):

@@ -165,6 +165,8 @@ def bearing(
     asperity bearing 7205C --axial '100..500 N, 5 steps' --speed '0..9000 1/min, 4 steps' --table k.csv
     # how large each wave may be alone, for a limit of each band
     asperity bearing 6205 --axial '150 N' --speed '1800 1/min' --limits '50 um/s, 30 um/s, none'
+    # a speed that changes, by a tacho beside the signal
+    asperity bearing 6205 --signal run-up.csv --column 1 --rate '12 kHz' --tacho 2 --tacho-reads '60 pulses'
     # several files of one measurement: each one, and all together
     asperity bearing 6205 --speed '1797 1/min' --signal run-1.wav run-2.wav run-3.wav
     """

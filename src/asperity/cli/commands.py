@@ -253,7 +253,7 @@ converge = click.option(
 what_helps = click.option(
     "--what-helps",
     is_flag=True,
-    help="Over a track: what pads, roughness, speed … do to the sound of rail, sleepers and wheel; in a ball "
+    help="Over a track: what pads, roughness, speed … do to the sound of rail, sleepers and wheel; in a "
     "bearing what clearance, preload, waves … do to its velocities.",
 )
 

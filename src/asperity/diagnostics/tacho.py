@@ -36,6 +36,6 @@ class Tacho:
         """With how many pulses in a turn the speed were another one, over that told; empty of no whole
         number."""
         pulses = self.pulses / ratio
-        if round(pulses) < 1 or abs(pulses - round(pulses)) > AS_WHOLE * pulses:
+        if not pulses or abs(pulses - round(pulses)) > AS_WHOLE * pulses:
             return ""
         return f", as with {count_of(round(pulses), 'pulse')} in a turn"

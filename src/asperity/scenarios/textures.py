@@ -256,12 +256,13 @@ def warn_of_textures(case: Case, shape: Geometry, textures: Textures) -> None:
     """Warn of a record that holds the start, and of laws and windows that do not see a defect."""
     settling = case.settled_time
     if settling < SETTLED * (1 - 1e-9):
-        apart = "shorten the duration or start farther along the path"
-        remedy = "set settling" if case.room is None else apart
+        least = f"{rounded(SETTLED * 1e3)} ms"
+        remedy = f"Take a settling of {least} or more{', with room for it' * (case.room is not None)}."
+        if case.settling is None:
+            remedy = "So that there is time for settling, shorten the duration or start farther along."
         ShortRecordWarning.warn(
-            f"the record starts {rounded(settling * 1e3)} ms after rest, less than "
-            f"{rounded(SETTLED * 1e3)} ms: its levels hold the start. So that there is time for settling, "
-            f"{remedy}."
+            f"the record starts {rounded(settling * 1e3)} ms after rest, less than {least}: its levels hold "
+            f"the start. {remedy}"
         )
     if not case.has_defect:
         return

@@ -18,7 +18,7 @@ from asperity.units import factor
 from asperity.written_numbers import capital, count_of, rounded
 
 READS = '"1/min", "Hz", or its pulses in a turn, as "1 pulse" or "60 pulses"'
-_PULSES = re.compile(r"\s*([0-9]{1,6})\s*pulses?\s*")
+_PULSES = re.compile(r"\s*([1-9][0-9]{0,5})\s*pulses?\s*")
 DIFFERS = 0.1
 """Share by which the mean speed of a tacho may lie beside the speed that is given."""
 
