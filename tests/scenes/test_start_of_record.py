@@ -2,12 +2,13 @@
 
 import re
 
+import numpy as np
 import pytest
 
 import asperity
 from asperity.case.cases import as_case, parse_case, template
 from asperity.running import prepare_case
-from asperity.scenes.start_of_record import start_foreseen
+from asperity.scenes.start_of_record import chance_along, start_foreseen
 from command_line import call
 from small_cases import COARSE
 
@@ -41,6 +42,21 @@ def test_the_settling_that_is_told_is_enough_and_not_much_more():
     (told,) = re.findall(r"Take a settling of ([\d.]+) s, with room for it", finding.remedy)
     assert not foreseen(RINGING | {"settling": float(told)})
     assert foreseen(RINGING | {"settling": 0.75 * float(told)})
+
+
+def test_all_places_of_a_record_count_alike():
+    """From either end the same is not built up; where a record begins and ends it is another."""
+    prepared = prepare_case(as_case(RINGING))
+    case = prepared.case
+    start = case.record_start
+    end = start + case.rolled_in(0.12)
+    band = np.array([200.0, 400.0, 800.0])
+
+    def not_built_up(*ends):
+        return chance_along(prepared.scene, 2e7, ends, band, 0.05, 0.12)[1]
+
+    np.testing.assert_allclose(not_built_up(start, end), not_built_up(end, start), rtol=1e-9)
+    assert not np.allclose(not_built_up(start, start), not_built_up(end, end), rtol=1e-3)
 
 
 def test_nothing_is_low_where_nothing_vibrates():
