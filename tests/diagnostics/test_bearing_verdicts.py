@@ -21,7 +21,7 @@ from asperity.diagnostics import (
     prewhitened,
 )
 from asperity.diagnostics.confidence import COEFFICIENTS, Basis, own_share
-from asperity.diagnostics.decision import NOT_FOUND, Diagnosis, _agrees
+from asperity.diagnostics.decision import NOT_FOUND, SUPPORTED, Diagnosis, _agrees, _beside_shaft
 from asperity.diagnostics.hypotheses import chance_of
 from asperity.diagnostics.prominence import Prominence
 from asperity.errors import InputError
@@ -444,6 +444,18 @@ def test_blows_of_no_part_are_told_to_be_one_at_a_speed_nearby(factor):
     assert found.nearest is not None
     assert found.nearest.part == "outer"
     assert found.nearest.speed == pytest.approx(30.0, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("speed", "support", "beside"),
+    [(30.3, 0.0, True), (30.3, SUPPORTED, False), (30.1, 0.0, False)],
+    ids=["beside", "with lines of its own", "as near as slip"],
+)
+def test_a_part_beside_the_lines_of_the_shaft_is_another_bearings_but_with_lines_of_its_own(
+    speed, support, beside
+):
+    heard = Hypothesis("inner", speed, 5.4 * speed, 1.0, support, 0.5)
+    assert _beside_shaft(heard, 30.0, 0.1) is beside
 
 
 # --- band and whitening
