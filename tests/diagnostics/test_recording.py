@@ -248,3 +248,12 @@ def test_what_is_taken_in_blocks_is_what_all_at_once_is():
         assert _median(values) == np.median(values)
         for times in (1, 3, 70_000):
             assert _reached(values, 0.25, times) == np.sort(np.abs(values - 0.25))[-times]
+
+
+@pytest.mark.parametrize("level", [1_797.0, -1_797.0])
+def test_what_moves_by_rounding_alone_stands_still(level):
+    """As a column with a speed that is read over angle; a sensor's noise is larger, whatever its offset."""
+    noise = np.random.default_rng(5).normal(size=2_000)
+    with pytest.raises(InputError, match="signal: received the same number throughout"):
+        Recording.of(level * (1.0 + 1e-15 * noise), RATE)
+    assert "is taken off" in " ".join(Recording.of(level * (1.0 + 1e-9 * noise), RATE).doubts)

@@ -34,6 +34,8 @@ SLOW = 2**18
 """Samples of a piece from which on it is cut to a length that is quick to transform."""
 OFFSET = 1.0
 """Mean over the rms about it from which on it is told."""
+ROUNDING = 1e-12
+"""Share of its largest value by which a signal that stands still may move, by rounding."""
 HOLDS_TONES = 512
 """Samples of a stretch, at least, by which it is known that it holds tones alone."""
 CLICK = 1.5
@@ -84,7 +86,7 @@ class Recording:
         _leave_out(left_out, lost)
         whole = values[~left_out] if left_out.any() else values
         allowed, remedy = "a signal that varies", "Is the sensor connected?"
-        moves = whole.size > 0 and np.ptp(whole) > 0.0
+        moves = whole.size > 0 and np.ptp(whole) > ROUNDING * max(whole.max(), -whole.min())
         require(moves, "signal", "the same number throughout", allowed, remedy)
         between = _between(left_out, values)
         stretches = tuple(each for each in between if each.size >= FEWEST and np.ptp(each) > 0.0)
