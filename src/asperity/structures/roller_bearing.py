@@ -330,8 +330,8 @@ class RollerBearing(RollingBearing):
 
         So much torque on the rings balances the friction of an end. Rollers turn against the inner ring about
         the line of their contact, from which the rib is h away: by f_i − f_c about the axis of the bearing
-        and by their spin f_s about their own, together h (|f_i − f_c| cos(α − β) + f_s)/|f_i − f_o|, which is
-        h sin α/(2 sin β) of cones with one apex.
+        and by their spin f_s about their own. With magnitudes of the differences together they are
+        h ((f_i − f_c) cos(α − β) + f_s)/(f_i − f_o), which is h sin α/(2 sin β) of cones with one apex.
         """
         if self.rib_height is None:
             return math.nan
