@@ -1,5 +1,6 @@
 """Kernels compute what Python computes, whatever their variables and indices are, with little code."""
 
+import sys
 from typing import NamedTuple
 
 import numba
@@ -10,7 +11,7 @@ from numba.core.codegen import CPUCodeLibrary
 from numba.core.compiler import run_frontend
 
 from asperity.kernels import options
-from asperity.kernels.lowering import assigned_once, leave_out_unused
+from asperity.kernels.lowering import _Builder, assigned_once, leave_out_unused
 from asperity.kernels.options import CALLED, INNER, LOOP, compiled
 
 GREATEST = np.uint64(2**64 - 1)
@@ -137,6 +138,11 @@ def of_rows_of_rows(a, b, k):
             rows[0][j] = rows[-1][1 + j] * 2.0
 
 
+def with_rows_filled(a, b, k):
+    b[k] = a[0]
+    b[-1, :k] = a[k]
+
+
 @compiled(**CALLED)
 def refused_below(x, k):
     if x < 0.0:
@@ -158,7 +164,8 @@ def through_exceptions(a, b, k):
 
 FUNCTIONS = [
     from_both_ends, of_a_row, assigned_in_branches, carried_over, until_broken, exchanged, of_another_type,
-    from_the_end_by_a_constant, of_a_tuple, over_ranges, through_exceptions,
+    from_the_end_by_a_constant, of_a_tuple, over_ranges, with_rows_filled,
+    through_exceptions,
 ]  # fmt: skip
 LAID_OUT = {
     "in rows": lambda b: b.copy(),
@@ -212,6 +219,14 @@ def first_from_last(records):
     values[0] = values[-1]
 
 
+def total_of_doubles(x):
+    y = np.zeros(len(x))
+    for i in range(len(x)):
+        y[i] = 2.0 * x[i]
+    z = x[1:]
+    return y.sum() + 0.0 * z[0]
+
+
 def from_one_to_the_next(x):
     before = x[0]
     for i in range(1, len(x)):
@@ -223,6 +238,9 @@ def from_one_to_the_next(x):
 def test_what_is_left_to_numba_computes_the_same():
     x = np.array([1.0, 4.0, 2.0])
     assert list(compiled(_nrt=False)(from_one_to_the_next)(x)) == [3.0, -2.0]
+    holders = sys.getrefcount(x)
+    assert compiled()(total_of_doubles)(x) == 14.0
+    assert sys.getrefcount(x) == holders
 
 
 def test_what_lies_beyond_an_array_is_refused_where_numba_is_told_to_look(monkeypatch):
@@ -268,6 +286,19 @@ def test_intermediate_code_is_half_of_what_numba_writes(function):
     arguments = np.ones(5), np.ones((4, 3)), 2
     own = code_of(compiled(_nrt=False)(function), *arguments)
     assert len(own) < 0.5 * len(code_of(numba.njit(_nrt=False)(function), *arguments))
+
+
+def test_of_a_value_what_was_put_in_is_taken_out_whole():
+    number = ir.DoubleType()
+    pair = ir.LiteralStructType([number, number])
+    function = ir.Function(ir.Module(), ir.FunctionType(number, [number]), "taken")
+    builder = _Builder(function.append_basic_block())
+    outer = ir.Constant(ir.LiteralStructType([pair, number]), ir.Undefined)
+    value = builder.insert_value(builder.insert_value(outer, function.args[0], (0, 1)), function.args[0], 1)
+    assert builder.extract_value(value, 1) is builder.extract_value(value, (0, 1)) is function.args[0]
+    part = builder.extract_value(value, 0)
+    assert part.type == pair
+    assert part.aggregate is value.aggregate  # into which a part of it was put
 
 
 def test_what_a_choice_between_paths_or_a_call_takes_is_kept():
