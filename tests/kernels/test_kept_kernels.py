@@ -4,10 +4,12 @@ import gc
 import importlib.util
 import operator
 import os
+import shutil
 import subprocess
 import sys
 import warnings
 from collections import defaultdict
+from pathlib import Path
 
 import numba
 import pytest
@@ -95,6 +97,18 @@ def test_a_kernel_is_compiled_once_until_a_source_changes(folder, module, monkey
     assert fresh(module)[1:] == (0, 1)
     monkeypatch.setattr(options, "SOURCES", "another version")
     assert fresh(module)[1:] == (0, 1)
+
+
+def test_kernels_are_named_by_how_they_are_lowered_as_well(tmp_path):
+    package = Path(options.__file__).parents[1]
+    copy = shutil.copytree(package, tmp_path / package.name, ignore=shutil.ignore_patterns("__pycache__"))
+    script = "from asperity.kernels.options import SOURCES, __file__; print(SOURCES, __file__)"
+    environment = os.environ | {"PYTHONPATH": str(tmp_path)}
+    kernels = copy / "kernels"
+    assert apart(script, copy, **environment) == f"{options.SOURCES} {kernels / 'options.py'}"
+    lowering = kernels / "lowering.py"
+    lowering.write_text(lowering.read_text() + "\n")
+    assert options.SOURCES not in apart(script, copy, **environment)
 
 
 DAMAGE = {
