@@ -179,3 +179,10 @@ def test_what_is_new_is_valid_and_survives_any_encoding_of_a_redirection(name):
 def test_laws_of_a_new_case_can_be_chosen():
     Path("chosen.toml").write_text(call("new", "ball-on-beam", "--law", "table", "--law", "hertz").stdout)
     assert read_case("chosen.toml").laws == ("table", "hertz")
+
+
+def test_no_case_is_begun_with_a_law_that_its_kind_cannot_have():
+    refused = call("new", "roller-bearing", "--law", "hertz", code=2)
+    assert 'a roller-bearing case: 1 error\n  - laws: received hertz; allowed: "areal".' in refused.stderr
+    assert refused.stdout == ""
+    assert 'laws = ["areal"]' in call("new", "roller-bearing", "--law", "areal").stdout

@@ -198,16 +198,18 @@ def not_a_kind(kind: object, names: Sequence[str]) -> InputError:
 def template(kind: str, laws: Sequence[str] = ()) -> str:
     """Write a commented case of a kind: each key with its value, meaning, what is allowed and default.
 
-    With laws of one's own instead of the usual ones, where any are given.
+    With laws of one's own instead of the usual ones, where any are given: such as the kind can have.
     """
     model = case_class(kind)
     chosen = [spec_of(law).name for law in laws]
     own = {"laws": toml.toml_value(chosen)} if chosen else {}
     rolled = {family_of(law) for law in chosen or model.keys["laws"].default}
     shown_keys = {**dict.fromkeys(law_keys().keys() - rolled, ()), **model.SHOWN}
-    return _HEAD.format(title=model.TITLE, needed=model.NEEDED) + commented(
-        model, {**model.WRITTEN_OUT, **own}, shown_keys
-    )
+    keys = commented(model, {**model.WRITTEN_OUT, **own}, shown_keys)
+    text = _HEAD.format(title=model.TITLE, needed=model.NEEDED) + keys
+    if own:
+        parse_case(text, f"a {kind} case")
+    return text
 
 
 def demo_case() -> AnyCase:
