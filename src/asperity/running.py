@@ -69,6 +69,7 @@ def run(
     from asperity.errors import PhysicsWarning
     from asperity.observables.beside_result import with_tables_beside
     from asperity.progress import shown_progress
+    from asperity.scenarios.compiling import compiled_ahead
     from asperity.scenes.report import Result
     from asperity.threads import one_thread_in_linear_algebra
 
@@ -81,9 +82,11 @@ def run(
             one_thread_in_linear_algebra(),
             shown_progress(progress) as told,
         ):
-            prepared = loaded if isinstance(loaded, ReadyCase) else prepare_case(loaded)
-            caught += prepared.caught
-            result: DataTree = function_named(prepared.case.COMPUTED_BY)(prepared, told, caught, brief=brief)
+            with compiled_ahead(loaded.case if isinstance(loaded, ReadyCase) else loaded):
+                prepared = loaded if isinstance(loaded, ReadyCase) else prepare_case(loaded)
+                caught += prepared.caught
+                compute = function_named(prepared.case.COMPUTED_BY)
+                result: DataTree = compute(prepared, told, caught, brief=brief)
             if converge:
                 from asperity.convergence import with_convergence
 

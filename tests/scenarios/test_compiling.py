@@ -8,8 +8,11 @@ from pathlib import Path
 
 import pytest
 
+from asperity.case.cases import as_case
+from asperity.contact import pressed_once
 from asperity.kernels import scanning
 from asperity.scenarios import compiling
+from small_cases import COARSE
 
 
 @pytest.fixture
@@ -34,9 +37,9 @@ def test_a_second_process_runs_while_it_is_needed_and_is_waited_for(started, mon
         assert process.poll() is None
     assert process.poll() is not None
     monkeypatch.setattr(compiling, "PATIENCE", 0.01)
-    told, pressed, half_space = [], [], compiling.HalfSpace
+    told, pressed, half_space = [], [], pressed_once.HalfSpace
     look = lambda *given, cells: pressed.append(cells) or half_space(*given, cells=cells)  # noqa: E731
-    monkeypatch.setattr(compiling, "HalfSpace", look)
+    monkeypatch.setattr(pressed_once, "HalfSpace", look)
     compiling.compile_kernels(lambda *report: told.append(report), "whole", "covered")  # not for ever
     assert pressed == ["whole", "covered"]
     assert "press_once(*('whole', 'covered'))" in started[1].told
@@ -45,6 +48,27 @@ def test_a_second_process_runs_while_it_is_needed_and_is_waited_for(started, mon
     with pytest.raises(KeyboardInterrupt), compiling._contact_compiled_beside(("whole",)):
         raise KeyboardInterrupt
     assert started[2].poll() is not None
+
+
+def test_the_second_process_starts_before_a_case_is_laid_out_where_its_cells_are_known(started, monkeypatch):
+    monkeypatch.setattr(compiling, "PATIENCE", 0.01)
+    covered = {"contact": COARSE["contact"] | {"rim_cells": "covered"}, "laws": ["table"]}
+    for keys in (covered, {"laws": ["hertz"]}):
+        case = as_case(COARSE | keys)
+        with compiling.compiled_ahead(case):
+            (ahead,) = started
+            assert f"press_once(*{case.cells_at_rims!r})" in ahead.told
+            compiling.compile_kernels(lambda *_: None, *case.cells_at_rims)
+            assert started == [ahead]
+            assert ahead.poll() is None  # until the case was run
+        assert ahead.poll() is not None
+        started.clear()
+    for case in (
+        COARSE | {"laws": ["table"]},
+        {"kind": "ball-bearing", "bearing": {"name": "6205"}, "radial": 100.0},
+    ):
+        with compiling.compiled_ahead(as_case(case)):
+            assert not started
 
 
 @pytest.mark.parametrize(
@@ -72,7 +96,7 @@ def test_the_second_process_is_told_what_exists():
 STARTED = """
 import time
 from asperity.scenarios import compiling
-compiling.BESIDE = compiling.BESIDE.partition("from asperity.scen")[0] + "import time; time.sleep(600)"
+compiling.BESIDE = compiling.BESIDE.partition("from asperity.contact")[0] + "import time; time.sleep(600)"
 compiling.processors, compiling.is_kept = lambda: 2, lambda function: False
 with compiling._contact_compiled_beside(("whole",)) as other:
     print(other.pid, flush=True)

@@ -317,8 +317,11 @@ class AnyCase(Section):
 
     @property
     def cells_at_rims(self) -> tuple[str, ...]:
-        """How cells at the rims of its contacts may count: several where that is chosen as it is prepared."""
-        return ("whole",)
+        """How cells at the rims of its contacts may count: several where that is chosen as it is prepared.
+
+        None of a kind whose raceways are laid out before that is known.
+        """
+        return ()
 
     @classmethod
     def shared_keys(cls, cases: "Sequence[Self]") -> dict[str, float]:

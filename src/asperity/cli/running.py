@@ -130,14 +130,16 @@ def prepared_case(case: AnyCase, source: str) -> ReadyCase:
 def _run_alone(case: AnyCase, directory: Path, source: str, *, report: bool, more: Sequence[str]) -> DataTree:
     """Compute a case, and more groups, and write its results, while no other run does into this folder."""
     from asperity.running import run
+    from asperity.scenarios.compiling import compiled_ahead
 
     began = time.monotonic()
     compiled = COMPILATION.seconds
     name = name_of_run(case)
-    prepared = prepared_case(case, source)
-    with progress_bar() as progress:
-        announce_scan(prepared)
-        tree: DataTree = run(prepared, progress=progress)
+    with compiled_ahead(case):
+        prepared = prepared_case(case, source)
+        with progress_bar() as progress:
+            announce_scan(prepared)
+            tree: DataTree = run(prepared, progress=progress)
     if name and name == name_of_run(case):  # no file was changed meanwhile
         tree.attrs[provenance.RUN.name] = name
     warn(warnings_of(tree))

@@ -4,13 +4,15 @@ import os
 import subprocess
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager, nullcontext, suppress
+from contextvars import ContextVar
 
 import numpy as np
 
-from asperity.contact.halfspace import HalfSpace
+from asperity.case.any_case import AnyCase
+from asperity.contact.pressed_once import press_once
 from asperity.errors import PhysicsWarning
-from asperity.kernels import box, pointforce
+from asperity.kernels import pointforce
 from asperity.kernels.options import is_kept
 from asperity.laws import HertzLaw
 from asperity.progress import COMPILED, Progress
@@ -24,13 +26,14 @@ from asperity.threads import processors
 CONTACT = "asperity.kernels.scanning.solve_positions"
 BESIDE = (
     "from asperity.sandbox import end_with_parent; end_with_parent(); import gc, os; gc.disable(); "
-    "from asperity.scenarios.compiling import press_once; press_once(*{}); os._exit(0)"
+    "from asperity.contact.pressed_once import press_once; press_once(*{}); os._exit(0)"
 )
 """What a second process does: half of all compilation, so that a first demo takes two thirds of the time.
 
 It leaves its garbage where it is, and ends without taking Python apart: that would be an eighth of its time.
 """
 PATIENCE = 300.0  # s that it is waited for
+_BESIDE: ContextVar[subprocess.Popen[bytes] | None] = ContextVar("contact compiled beside", default=None)
 ROLLING = "asperity.kernels.stepping.roll_prepared"
 ROLLING_TIME = 6.5
 """Processor time of compiling what rolls, s, at a pace of one."""
@@ -68,8 +71,22 @@ def time_to_compile(*kinds: str) -> float:
 
 
 @contextmanager
+def compiled_ahead(case: AnyCase) -> Iterator[None]:
+    """Compile the contact of a case while it is laid out, where its kind of cells is known before."""
+    cells = case.cells_at_rims
+    with _contact_compiled_beside(cells) if len(cells) == 1 else nullcontext():
+        yield
+
+
+@contextmanager
 def _contact_compiled_beside(cells: tuple[str, ...]) -> Iterator[subprocess.Popen[bytes] | None]:
-    """Compile the contact in a second process, unless it is on disk or no process can be started."""
+    """Compile the contact in a second process, unless it is on disk or no process can be started.
+
+    Within another such context that process serves, which was started ahead.
+    """
+    if (ahead := _BESIDE.get()) is not None:
+        yield ahead
+        return
     other = None
     null = subprocess.DEVNULL
     if processors() > 1 and not is_kept(CONTACT):
@@ -79,9 +96,11 @@ def _contact_compiled_beside(cells: tuple[str, ...]) -> Iterator[subprocess.Pope
             other = subprocess.Popen(
                 command, env=environment, stdin=subprocess.PIPE, stdout=null, stderr=null
             )
+    outside = _BESIDE.set(other)
     try:
         yield other
     finally:
+        _BESIDE.reset(outside)
         if other is not None:
             with other:
                 other.kill()
@@ -95,14 +114,3 @@ def roll_once() -> None:
     where = {"start": 0.2, "positions": [0.0, 0.1]}
     roll_bodies(beam, bodies, [law] * 2, speed=1.0, duration=1e-4, time_step=1e-5, **where)  # type: ignore[arg-type]
     pointforce.evaluate_all(law.prepare(np.zeros(2)), np.zeros(2), 0)
-
-
-def press_once(*kinds: str) -> None:
-    """Press a body on each kind of cells, to an approach and under a load, and estimate an approach."""
-    x = np.arange(-4.0, 5.0) ** 2
-    gap = np.add.outer(x, x)
-    for cells in kinds:
-        half_space = HalfSpace((9, 9), (1.0, 1.0), 1.0, cells=cells)
-        half_space.solve(gap, approach=5.0)
-        half_space.solve(gap, load=5.0)
-    box.foundation_approach(np.zeros((9, 9)), 1.0, 1.0, 1.0, np.inf)
