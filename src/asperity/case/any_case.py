@@ -319,7 +319,7 @@ class AnyCase(Section):
     def cells_at_rims(self) -> tuple[str, ...]:
         """How cells at the rims of its contacts may count: several where that is chosen as it is prepared.
 
-        None of a kind whose raceways are laid out before that is known.
+        Empty of a kind whose contacts are not compiled ahead, as of bearings.
         """
         return ()
 

@@ -369,45 +369,10 @@ def decided(
     record: BearingRecord, found: Sequence[Hypothesis], tones: Mapping[str, Tone], told: float
 ) -> Diagnosis:
     """Decide what the hypotheses of a record say of the speed given."""
-    ranked = sorted(found, key=lambda each: -_worth(each, told))
-    resolution = 1.0 / record.duration
-    struck = _likely([each for each in ranked if _deep(each, tones, record.duration * record.pieces)])
-    struck = [each for each in struck if not _of_sound_ring(each, ranked, tones)]
-    deepest = deepest_comb((each.depth, each.tone) for each in found)
-    once = abs(deepest / told - 1.0) <= APART or is_turn(deepest, told, resolution)
-    blows = 0.0 if once else deepest  # once a turn they are the shaft's
-    shaft, support, others = shaft_near(record, tones, told, blows)
-    seen = support >= SUPPORTED and all(
-        _agrees(each, told, resolution) for each in (shaft, record.speed(shaft))
-    )
-    there = seen and not others
-    heard = others if seen else ()
-    of_turns = [each for each in struck if of_shaft_or_mains(record, each, told, resolution, seen, heard)]
-    struck = [each for each in struck if each not in of_turns]
-    seen_at = record.speed(shaft)
-    near = [each for each in struck if near_speed(each, told) and record.holds_shaft(told)]
-    foreign = [each for each in near if _side_band(each, found, told, resolution)]
-    if there:
-        foreign += [each for each in near if _beside_shaft(each, seen_at, resolution)]
-    struck, ranked = ([each for each in some if each not in foreign] for some in (struck, ranked))
+    bare, struck, ranked = _sifted(record, found, tones, told)
+    resolution = bare.resolution
+    there = bare.speed_is == CONFIRMED
     turns = record.duration * told
-    bare = Diagnosis(
-        told=told,
-        speed=seen_at if there and at_speed(seen_at, told) else told,
-        speed_is=CONFIRMED if there else UNCONFIRMED,
-        parts=(),
-        alike=(),
-        faint=None,
-        blows=0.0,
-        others=heard,
-        basis=Basis("sound" if seen else "nothing", turns),
-        once_in_a_turn=any(
-            once_in_a_turn(record, each, speed, resolution) for each in of_turns for speed in (told, *heard)
-        ),
-        resolution=resolution,
-        record=record,
-        by_chance=chance_of(tones),
-    )
     if not struck:
         return replace(bare, faint=next((each for each in ranked if near_speed(each, told)), None))
     best = struck[0]
@@ -434,6 +399,57 @@ def decided(
         return replace(bare, faint=faint[0])
     otherwise = _nearest([each for each in struck if abs(each.tone - best.tone) <= resolution], told)
     return replace(bare, blows=best.tone, basis=Basis("blows", turns), nearest=otherwise)
+
+
+def _sifted(
+    record: BearingRecord, found: Sequence[Hypothesis], tones: Mapping[str, Tone], told: float
+) -> tuple[Diagnosis, list[Hypothesis], list[Hypothesis]]:
+    """Find what a record says of the speed given, parts that are struck, and all hypotheses, by their worth.
+
+    Left out is what is of the shaft itself, side bands and, where lines of the shaft are there, parts
+    beside them.
+    """
+    ranked = sorted(found, key=lambda each: -_worth(each, told))
+    resolution = 1.0 / record.duration
+    struck = _likely([each for each in ranked if _deep(each, tones, record.duration * record.pieces)])
+    struck = [each for each in struck if not _of_sound_ring(each, ranked, tones)]
+    deepest = deepest_comb((each.depth, each.tone) for each in found)
+    once = abs(deepest / told - 1.0) <= APART or is_turn(deepest, told, resolution)
+    blows = 0.0 if once else deepest  # once a turn they are the shaft's
+    shaft, support, others = shaft_near(record, tones, told, blows)
+    seen = support >= SUPPORTED and all(
+        _agrees(each, told, resolution) for each in (shaft, record.speed(shaft))
+    )
+    there = seen and not others
+    heard = others if seen else ()
+    of_turns = [each for each in struck if of_shaft_or_mains(record, each, told, resolution, seen, heard)]
+    struck = [each for each in struck if each not in of_turns]
+    seen_at = record.speed(shaft)
+    near = [each for each in struck if near_speed(each, told) and record.holds_shaft(told)]
+    foreign = [each for each in near if _side_band(each, found, told, resolution)]
+    if there:
+        foreign += [each for each in near if _beside_shaft(each, seen_at, resolution)]
+    struck = [each for each in struck if each not in foreign]
+    ranked = [each for each in ranked if each not in foreign]
+    turns = record.duration * told
+    bare = Diagnosis(
+        told=told,
+        speed=seen_at if there and at_speed(seen_at, told) else told,
+        speed_is=CONFIRMED if there else UNCONFIRMED,
+        parts=(),
+        alike=(),
+        faint=None,
+        blows=0.0,
+        others=heard,
+        basis=Basis("sound" if seen else "nothing", turns),
+        once_in_a_turn=any(
+            once_in_a_turn(record, each, speed, resolution) for each in of_turns for speed in (told, *heard)
+        ),
+        resolution=resolution,
+        record=record,
+        by_chance=chance_of(tones),
+    )
+    return bare, struck, ranked
 
 
 def _nearest(found: Sequence[Hypothesis], told: float) -> Hypothesis | None:

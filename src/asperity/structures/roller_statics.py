@@ -339,38 +339,24 @@ def _solved(
     levers = np.array([1.0, 1.0, 1.0, rollers.lever, rollers.lever])
     moved = moved / levers  # tilts of the ring as ways at half a length of a roller
     rest = np.array([-0.5 * bearing.clearance * math.cos(bearing.contact_angle), 0.0])
-    start = np.zeros((len(angles), 5))
+    start = np.tile(_first_ways(bearing, load), (len(angles), 1))
     held = tilt is not None and math.isinf(tilt_stiffness)
-    spring, untilted = 0.0, np.zeros(2)
+    spring = 0.0
     if tilt is not None:
-        start[:, MOMENTS] = untilted = tilt * levers[MOMENTS]
-        tilted = rest + np.einsum("mzik,mk->mzi", moved, start)
+        start[:, MOMENTS] = tilt * levers[MOMENTS]
+        tilted = rest + np.einsum("mzik,mk->mzi", moved[..., MOMENTS], start[:, MOMENTS])
         scale = max(scale, float(rollers.together(tilted)[1].max()))
         if held:
             rest = tilted
         else:
             spring = tilt_stiffness / rollers.lever**2
-    pressed = 2.0 * inner.approach(5.0 * load[FORCES].max() / bearing.rollers)
-    start[:, 0] = (max(0.5 * bearing.clearance, 0.0) + pressed) * (load[0] > 0.0)
-    sine = math.sin(bearing.contact_angle)
-    if sine:
-        start[:, 2] = (max(0.5 * bearing.clearance, 0.0) + pressed) / sine
-    free = [0, 1] + [2] * bool(sine) + [3, 4] * (not held)
-    sprung = spring * np.diag([each in (3, 4) for each in free])
-    unloaded = np.array([0.0, 0.0, 0.0, *untilted])[free]
+    free = [0, 1] + [2] * bool(math.sin(bearing.contact_angle)) + [3, 4] * (not held)
     force = load / levers
     force[2] -= bearing.flung_axially(lift)
-
-    def energy_of(ring: Array) -> tuple[Array, Array, Array]:
-        stretch = rest + np.einsum("mzik,mk->mzi", moved[..., free], ring)
-        energy, pulled, stiffness, _ = rollers.together(stretch)
-        turned = (ring - unloaded) @ sprung
-        gradient = np.einsum("mzik,mzi->mk", moved[..., free], pulled) - force[free] + turned
-        hessian = np.einsum("mzik,mzij,mzjl->mkl", moved[..., free], stiffness, moved[..., free]) + sprung
-        stored = 0.5 * (turned * (ring - unloaded)).sum(-1)
-        return energy.sum(-1) + stored - ring @ force[free], gradient, hessian
-
-    ring, imbalance = least_energy(energy_of, start[:, free], max(scale, lift), "balance of the inner ring")
+    shaft = _Shaft(spring * np.diag([each in (3, 4) for each in free]), start[0, free])
+    ring, imbalance = shaft.balance(
+        rollers, moved[..., free], rest, force[free], start[:, free], max(scale, lift)
+    )
     stretch = rest + np.einsum("mzik,mk->mzi", moved[..., free], ring)
     _, pulled, stiffness, overlaps = rollers.together(stretch)
     start[:, free] = ring
@@ -387,6 +373,50 @@ def _solved(
         whole * levers[:, None] * levers,
         imbalance,
     )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class _Shaft:
+    """A shaft that holds the ring: its stiffness against the ways that are free, and where it does not push.
+
+    Parameters
+    ----------
+    stiffness : ndarray (f, f)
+        Against ways of the ring, N/m; zero of those that it does not hold.
+    at_ease : ndarray (f,)
+        Ways of the ring at which it does not push, m; of those that it holds.
+    """
+
+    stiffness: Array
+    at_ease: Array
+
+    def balance(
+        self, rollers: _Rollers, moved: Array, rest: Array, force: Array, start: Array, scale: float
+    ) -> tuple[Array, float]:
+        """Ways of the ring (m, f), m, at which rollers and shaft carry a force (f,), N; what is left of it.
+
+        `moved` (m, Z, 2, f) is how rollers follow the ring, `rest` where they are without that, m.
+        """
+
+        def energy_of(ring: Array) -> tuple[Array, Array, Array]:
+            energy, pulled, stiffness, _ = rollers.together(rest + np.einsum("mzik,mk->mzi", moved, ring))
+            turned = (ring - self.at_ease) @ self.stiffness
+            gradient = np.einsum("mzik,mzi->mk", moved, pulled) - force + turned
+            hessian = np.einsum("mzik,mzij,mzjl->mkl", moved, stiffness, moved) + self.stiffness
+            stored = 0.5 * (turned * (ring - self.at_ease)).sum(-1)
+            return energy.sum(-1) + stored - ring @ force, gradient, hessian
+
+        return least_energy(energy_of, start, scale, "balance of the inner ring")
+
+
+def _first_ways(bearing: RollerBearing, load: Array) -> Array:
+    """Ways of the ring (5,), m, from which its balance is sought: through the clearance, by its load."""
+    apart = max(0.5 * bearing.clearance, 0.0)
+    pressed = 2.0 * bearing.inner_contact.approach(5.0 * load[FORCES].max() / bearing.rollers)
+    sine = math.sin(bearing.contact_angle)
+    along = (apart + pressed) * (load[0] > 0.0)
+    axially = (apart + pressed) / sine if sine else 0.0
+    return np.array([along, 0.0, axially, 0.0, 0.0])
 
 
 def _followed(bearing: RollerBearing, azimuth: Array) -> Array:
