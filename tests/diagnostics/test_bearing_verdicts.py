@@ -20,7 +20,8 @@ from asperity.diagnostics import (
     prewhitened,
 )
 from asperity.diagnostics.confidence import COEFFICIENTS, Basis, own_share
-from asperity.diagnostics.decision import NOT_FOUND, SUPPORTED, Diagnosis, _agrees, _beside_shaft
+from asperity.diagnostics.decision import SUPPORTED, _agrees, _beside_shaft
+from asperity.diagnostics.diagnosis import NOT_FOUND, Diagnosis
 from asperity.diagnostics.hypotheses import chance_of
 from asperity.diagnostics.prominence import Prominence
 from asperity.errors import InputError

@@ -13,7 +13,7 @@ from asperity.cli.bearing_films import say_films
 from asperity.cli.bearing_table import write_table
 from asperity.cli.bearing_tolerances import say_tolerances
 from asperity.cli.heard import heard
-from asperity.diagnostics.decision import part_name
+from asperity.diagnostics.diagnosis import part_name
 from asperity.errors import InputError
 from asperity.files import write_bytes
 from asperity.reference.bearings import COLUMNS, LISTED, PITCH, TONES, by_citation, named_bearings

@@ -7,7 +7,7 @@ from typing import Any
 
 from asperity.case.loaded_bearing import read_bearing
 from asperity.diagnostics import ISO_BANDS, one_anderon
-from asperity.diagnostics.decision import part_name
+from asperity.diagnostics.diagnosis import part_name
 from asperity.errors import InputError
 from asperity.structures.waviness_tolerance import BELOW, WaveTolerance, ring_frequency, wave_tolerances
 from asperity.terminal import say, say_table

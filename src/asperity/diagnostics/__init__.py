@@ -5,7 +5,8 @@ are expected (`lines`), over orders where the speed changes (`orders`), what els
 what it may mean (`hypotheses`), and what is said of it (`decision`, `confidence`, `verdict`).
 """
 
-from asperity.diagnostics.decision import Diagnosis, diagnose, diagnose_together
+from asperity.diagnostics.decision import diagnose, diagnose_together
+from asperity.diagnostics.diagnosis import Diagnosis
 from asperity.diagnostics.envelopes import (
     ISO_BANDS,
     Spectrum,

@@ -3,7 +3,7 @@ resolved."""
 
 import math
 
-from asperity.diagnostics.decision import RESOLVED, Diagnosis
+from asperity.diagnostics.diagnosis import RESOLVED, Diagnosis
 from asperity.diagnostics.hypotheses import Hypothesis
 from asperity.diagnostics.tacho import Tacho
 from asperity.written_numbers import capital, rounded
