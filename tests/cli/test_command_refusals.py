@@ -106,6 +106,12 @@ REFUSED = [
     ("run case.toml --outptu x", "No such option"),
     ("run", "Missing argument"),
     ("compare", "Missing argument 'RUNS...'"),
+    ("new ball-on-beam b.toml", "received 'b.toml' behind KIND; allowed: KIND and options. What it says goes "
+     "into a file behind '>': > b.toml"),
+    ("demo here now", "received 'here' 'now' behind the command; allowed: options. What it writes has its "
+     "name behind -o: -o here"),
+    ("run|check case.toml case.toml", "received 'case.toml' behind CASE; allowed: CASE and options. Give the "
+     "command once for each file."),
     ("new ball-on-bam", 'Error: kind: received \'ball-on-bam\'; allowed: "ball-on-beam", "wheel-on-rail", '
      '"bodies", "ball-bearing", "roller-bearing", "study", "what-helps", "what-helps-in-bearings", '
      '"what-helps-in-roller-bearings", "optimisation", "optimisation-of-bearings". '

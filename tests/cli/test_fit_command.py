@@ -107,12 +107,13 @@ def test_the_same_fit_replaces_its_own_files_and_no_others(rates):
     )
     refused = call(*other, code=2).stderr
     assert (
-        "received a folder that holds another fitted.toml; allowed: a new folder, or that of the same fit"
-        in refused
-    )
+        f"{Path('out', 'fitted.toml')}: received one of another fit, or of somebody; allowed: a folder "
+        "without fitted.toml, or with that of the same fit. Choose another folder with -o, or replace "
+        "fitted.toml with --overwrite."
+    ) in refused
     call(*other, "--overwrite")
     Path("fitted.html").write_text("mine")
-    assert "holds another fitted.html" in call(*FIT, code=2).stderr
+    assert "fitted.html: received one of another fit" in call(*FIT, code=2).stderr
     assert Path("fitted.html").read_text() == "mine"
 
 

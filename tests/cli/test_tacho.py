@@ -47,6 +47,7 @@ def told(tacho, *words):
 def test_a_fault_in_a_run_up_is_named_over_angle(tacho, reads):
     found = told(tacho, "--tacho", "tacho", "--tacho-reads", reads)
     assert found["faults"] == ["outer"]
+    assert found["speed_is"] == "measured"
     assert found["speed"] == pytest.approx(29.0, rel=0.01)
     assert found["lines"]["outer"]["frequency"][0] / found["speed"] == pytest.approx(OUTER, rel=0.003)
     turned = found["tacho"]
@@ -79,6 +80,7 @@ def test_a_steady_speed_smears_nothing():
 def test_over_time_it_is_not():
     found = told(SPEEDS, "--speed", "29 Hz")
     assert found["faults"] == []
+    assert found["speed_is"] == "unconfirmed"
     assert found["tacho"] is None
 
 

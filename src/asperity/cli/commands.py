@@ -94,6 +94,26 @@ class Command(click.Command):
             self.params.append(_manner_option("-q", "--quiet", help=quiet))
             self.params.append(_manner_option("-v", "--verbose", help=verbose))
 
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Read what stands behind the command; what it does not take is refused, with what it does."""
+        ctx.allow_extra_args = True
+        left = super().parse_args(ctx, args)
+        if left and not isinstance(self, click.Group):
+            words = [str(each.name).upper() for each in self.params if isinstance(each, click.Argument)]
+            behind = " and ".join(words) or "the command"
+            allowed = " and ".join([*words, "options"])
+            received = " ".join(f"'{each}'" for each in left)
+            ctx.fail(f"received {received} behind {behind}; allowed: {allowed}. {self._way_out(left[0])}")
+        return left
+
+    def _way_out(self, word: str) -> str:
+        """What to do with a word that is one too many."""
+        if Path(word).exists():
+            return "Give the command once for each file."
+        if any("--output" in each.opts for each in self.params):
+            return f"What it writes has its name behind -o: -o {word}"
+        return f"What it says goes into a file behind '>': > {word}"
+
     def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write command lines that can be copied, each under what it does."""
         if self.examples:
@@ -281,6 +301,13 @@ def mark_of(what: str, asked: str, text: str) -> str:
     return f"# {content_key(what, asked, text)}\n"
 
 
+def taken_file(file: Path, by: str) -> InputError:
+    """Error about a file that is not what this command has written there before."""
+    remedy = f"Choose another folder with -o, or replace {file.name} with --overwrite."
+    allowed = f"a folder without {file.name}, or with that of the same {by}"
+    return InputError(str(file), f"one of another {by}, or of somebody", allowed, remedy)
+
+
 def refuse_other_case(what: str, asked: str, case: Path, by: str) -> None:
     """Let a command replace the case that it has found itself; any other one in the folder stays."""
     from asperity.case import toml
@@ -291,7 +318,7 @@ def refuse_other_case(what: str, asked: str, case: Path, by: str) -> None:
     with suppress(InputError):
         mark, _, text = toml.read_definition(case, "case", "").partition("\n")
     if f"{mark}\n" != mark_of(what, asked, text):
-        raise taken_folder(case.parent, f"a folder that holds another {case.name}", by)
+        raise taken_file(case, by)
 
 
 def _choose_device(context: click.Context, option: click.Parameter, name: str | None) -> None:

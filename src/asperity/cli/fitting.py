@@ -13,7 +13,7 @@ from asperity.case.any_case import AnyCase, entries, in_toml
 from asperity.case.cases import read_case
 from asperity.case.form import content, file_digest
 from asperity.case.toml import toml_text
-from asperity.cli.commands import mark_of, refuse_other_case, require_writable, taken_folder
+from asperity.cli.commands import mark_of, refuse_other_case, require_writable, taken_file
 from asperity.cli.running import doubted
 from asperity.errors import InputError
 from asperity.fitting.fitted import Fitted
@@ -118,7 +118,7 @@ def _refuse_other(asked: str, written: dict[str, Path]) -> None:
     refuse_other_case("fitted", asked, case, "fit")
     for file in written.values():
         if file.exists() and not case.exists():
-            raise taken_folder(case.parent, f"a folder that holds another {file.name}", "fit")
+            raise taken_file(file, "fit")
 
 
 def _origin(found: Fitted, path: Path) -> str:

@@ -216,9 +216,11 @@ def _length(signals: Sequence[Recorded]) -> str:
 def _taken(diagnosis: Diagnosis) -> str:
     """In which pieces a signal is read, and which speed is taken."""
     given = "as given" if diagnosis.tacho is None else "by the tacho"
+    not_found = f"{given}{': lines of the shaft are not found' * (not diagnosis.others)}"
     origin = {
         "confirmed": "by lines of the shaft",
-        "unconfirmed": f"{given}{': lines of the shaft are not found' * (not diagnosis.others)}",
+        "measured": not_found,
+        "unconfirmed": not_found,
         "contradicted": f"by what its lines fit, not {rounded(60.0 * diagnosis.told, 5)} 1/min {given}",
     }[diagnosis.speed_is]
     pieces = diagnosis.record.pieces
@@ -234,7 +236,7 @@ def _agreement(singles: Mapping[str, Diagnosis]) -> str:
     words = ", ".join(
         f"{count} name{'s' * (count == 1)} {_article(what)}" for what, count in named.most_common()
     )
-    speeds = [each.speed for each in singles.values() if each.speed_is != "unconfirmed"]
+    speeds = [each.speed for each in singles.values() if each.speed_is in ("confirmed", "contradicted")]
     said = f"Of {len(singles)} signals, {words}."
     if speeds and max(speeds) / min(speeds) - 1.0 > SAME_SPEED:
         turning = f"{rounded(min(speeds), 4)} to {rounded(max(speeds), 4)} Hz"

@@ -12,6 +12,7 @@ from asperity.diagnostics.diagnosis import (
     CONFIRMED,
     CONTRADICTED,
     EVEN,
+    MEASURED,
     NOT_FOUND,
     RESOLVED,
     UNCONFIRMED,
@@ -196,7 +197,9 @@ def diagnose_together(
     else:
         found = decided(record, record.read(tones, told), tones, told)
     doubts = dict.fromkeys(each for recording in recordings for each in recording.doubts)
-    return replace(found, doubts=tuple(doubts), fastest=fastest, element=element, tacho=tacho)
+    speed_is = MEASURED if tacho is not None and found.speed_is == UNCONFIRMED else found.speed_is
+    told_of = replace(found, doubts=tuple(doubts), fastest=fastest, element=element)
+    return replace(told_of, speed_is=speed_is, tacho=tacho)
 
 
 def _longest_piece(samples_of_turn: float) -> float:

@@ -15,13 +15,15 @@ RESOLVED = 2.0 * LOWEST_PLACE
 what they stand beside."""
 EVEN = 0.5
 """Confidence of a part, at least, that is named in a shorter record."""
-Speed = Literal["confirmed", "unconfirmed", "contradicted"]
+Speed = Literal["confirmed", "measured", "unconfirmed", "contradicted"]
 NAMES = {"outer": "outer ring", "inner": "inner ring", "ball": "ball"}
 """Of parts, as people say them."""
 NOT_FOUND = "fault, shaft not found"
 """Kind of a verdict on a part that no line of the shaft speaks for."""
 CONFIRMED: Speed = "confirmed"
 UNCONFIRMED: Speed = "unconfirmed"
+MEASURED: Speed = "measured"
+"""By a tacho: lines of the shaft neither confirm nor contradict it."""
 CONTRADICTED: Speed = "contradicted"
 
 
@@ -38,8 +40,9 @@ class Diagnosis:
     ----------
     told, speed : float
         Speed given, and by the lines of the shaft where they are there, Hz.
-    speed_is : {"confirmed", "unconfirmed", "contradicted"}
-        Whether lines of the shaft are where the speed given says, are not found, or are elsewhere.
+    speed_is : {"confirmed", "measured", "unconfirmed", "contradicted"}
+        Whether lines of the shaft are where the speed given says, are not found, where a tacho gave it or
+        nothing but words, or are elsewhere.
     parts : tuple of Hypothesis
         Parts that are struck, the clearest first; none of a record without the lines of a fault. More than
         one where several are struck.

@@ -191,9 +191,11 @@ def _of_parts(found: Diagnosis) -> str:
             f"lines of the {found.name(each.part)} at {_hertz(each.blows, found)}{_half(each)}"
             for each in found.parts
         )
+        here = capital(f"{condition}, there are".removeprefix(", "))
         begin = {
             "confirmed": "There are",
-            "unconfirmed": capital(f"{condition}, there are".removeprefix(", ")),
+            "measured": here,
+            "unconfirmed": here,
             "contradicted": "At that speed there are",
         }[found.speed_is]
         foreign = ", or of another bearing" * (found.may_be_foreign and found.otherwise is None)
