@@ -117,7 +117,8 @@ class ComputationError(AsperityError):
     """
 
     def __init__(self, what: str, remedy: str) -> None:
-        self.what, self.remedy = what, remedy
+        self.what = what
+        self.remedy = remedy
         super().__init__(printable(f"{what}. Try: {remedy}."))
 
 

@@ -285,10 +285,8 @@ def alone_in(folder: Path) -> Iterator[None]:
         except OSError as error:
             raise _not_written(folder, error) from error
         if free is False:
-            received, allowed = (
-                "a folder into which another run is writing",
-                "a folder of its own for each run",
-            )
+            received = "a folder into which another run is writing"
+            allowed = "a folder of its own for each run"
             remedy = "Wait for that run, or choose another folder with -o."
             raise InputError(str(folder), received, allowed, remedy)
         try:

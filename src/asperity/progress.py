@@ -59,7 +59,8 @@ class Compilation:
     """What was compiled in this process, its first use of kernels, and how long that took, s."""
 
     def __init__(self) -> None:
-        self.functions, self.seconds = 0, 0.0
+        self.functions = 0
+        self.seconds = 0.0
         self._said = False
         self._announce: Callable[[str], object] | None = None
         self._begun: dict[str, float] = {}  # functions that are being compiled, one inside the other
@@ -126,7 +127,8 @@ class _Piece:
         now = time.monotonic()
         if done < self.done:
             self._seen.clear()
-        self.done, self.total = done, total
+        self.done = done
+        self.total = total
         self._seen.append((now, done))
         while len(self._seen) > 2 and self._seen[1][0] < now - WINDOW and self._is_told_by_others():
             self._seen.popleft()

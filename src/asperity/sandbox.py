@@ -82,7 +82,8 @@ def _asked(request: bytes, patience: float) -> tuple[int, Answer | None, bytes]:
     command = [sys.executable, "-c", _START, json.dumps(sys.path)]
     pipe = subprocess.PIPE
     environment = os.environ | _ONE_THREAD
-    late, words = Event(), bytearray()
+    late = Event()
+    words = bytearray()
     with subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=pipe, env=environment) as process:
         assert process.stdin is not None
         assert process.stdout is not None

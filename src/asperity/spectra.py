@@ -330,7 +330,8 @@ def band_levels(
     step = _frequency_step(lines, np.asarray(psd, dtype=np.float64))
     require(reference > 0.0, "reference", reference, "a positive value")
     smallest, largest = _covered_centres(lines, step)
-    first, last = smallest if low is None else low, largest if high is None else high
+    first = smallest if low is None else low
+    last = largest if high is None else high
     covered = first <= last * HALF_BAND
     require(covered, "frequency", count_of(lines.size, "line"), "enough lines to cover a band")
     centres, edges_low, edges_high = third_octave_bands(first, max(first, last))

@@ -47,7 +47,8 @@ def change_manner(**changes: bool) -> None:
 def speaking(wanted: Manner) -> Iterator[None]:
     """Speak in a manner while the body of the ``with`` statement runs, until `change_manner` changes it."""
     global _manner
-    before, _manner = _manner, wanted
+    before = _manner
+    _manner = wanted
     try:
         yield
     finally:
@@ -222,7 +223,8 @@ class _Patient:
     """A text stream that goes on when nobody reads it any more."""
 
     def __init__(self, stream: TextIO, name: str) -> None:
-        self._stream, self._name = stream, name
+        self._stream = stream
+        self._name = name
         self._failure: ComputationError | None = None
 
     def __getattr__(self, name: str) -> Any:

@@ -456,7 +456,8 @@ class BearingUnderLoad(AnyCase):
         yield from self._problems_of_record()
         for way in ("radial", "axial") if self.static.contact_angle else ("radial",):
             if not any(getattr(keys, f"{way}_stiffness") for keys in (self.shaft, self.housing)):
-                received, allowed = "0 N/m of [shaft] and of [housing]", "one of them that holds its ring"
+                received = "0 N/m of [shaft] and of [housing]"
+                allowed = "one of them that holds its ring"
                 yield InputError(f"shaft.{way}_stiffness", received, allowed)
 
     def _problems_of_grooves(self) -> Iterator[InputError]:

@@ -205,6 +205,7 @@ class BallOnBeam(Case):
     @property
     def title(self) -> str:
         """Say what rolls over what in this case."""
-        ball, beam = self.ball.material.name, self.beam.material.name
+        ball = self.ball.material.name
+        beam = self.beam.material.name
         article = "an" if beam[0].lower() in "aeiou8" else "a"
         return f"{ball[0].upper()}{ball[1:]} ball on {article} {beam} beam"

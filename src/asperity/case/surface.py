@@ -295,7 +295,8 @@ class Surface(MeasuredLine, MeasuredMap):
         if beside and self.has_areal_spectrum and not self.IN_STRIPS:
             remedy = "Remove one: samples have one source."
             yield InputError("lateral", f"a number beside {beside[0]}", "a spectrum alone", remedy)
-        longest, shortest = self.longest, self.shortest
+        longest = self.longest
+        shortest = self.shortest
         if longest is not None and shortest is not None and longest <= shortest:
             received = f"{written(longest, 'm', 'um')} with shortest {written(shortest, 'm', 'um')}"
             yield InputError("longest", received, "a wavelength greater than shortest")

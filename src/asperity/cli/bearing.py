@@ -276,7 +276,8 @@ def _say_tones(of: AnyBearing, turning: Kinematics, speed: float) -> dict[str, f
     rows = [["cage", f"{turning.cage:.4g}", f"{turning.cage / turning.turning:.4f}", ""]]
     waves = []
     for part, words in MEANINGS.items():
-        tone, beside = turning.tone(part), turning.modulation(part)
+        tone = turning.tone(part)
+        beside = turning.modulation(part)
         words = words.format(element)
         words += f", ± {beside:.4g} as it turns through the load" if beside else ""
         name = part_name(part, element)

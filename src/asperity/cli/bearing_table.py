@@ -77,7 +77,8 @@ def _say(found: BearingMatrices, keys: LoadKeys, source: str) -> None:
     ]
     rows = []
     for a, b, n in np.ndindex(*found.stiffness.shape[:3]):
-        matrix, damping = found.stiffness[a, b, n].mean(axis=0), found.damping[a, b, n].mean(axis=0)
+        matrix = found.stiffness[a, b, n].mean(axis=0)
+        damping = found.damping[a, b, n].mean(axis=0)
         at = found.radial[a], found.axial[b], 60.0 * found.speed[n]
         rows.append([rounded(each, 4) for each in (*at, *np.diag(matrix), damping[0, 0])])
     name = keys.name or source

@@ -314,7 +314,8 @@ def refuse_other_case(what: str, asked: str, case: Path, by: str) -> None:
 
     if not case.exists():
         return
-    mark, text = "", ""
+    mark = ""
+    text = ""
     with suppress(InputError):
         mark, _, text = toml.read_definition(case, "case", "").partition("\n")
     if f"{mark}\n" != mark_of(what, asked, text):

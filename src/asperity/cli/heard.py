@@ -160,7 +160,8 @@ def _say_signals(signals: Signals, singles: Mapping[str, Diagnosis]) -> None:
 def _turned(courses: Sequence[Turned], told: float) -> dict[str, Any]:
     """Say how fast all turned, and of which speed frequencies are; return that."""
     slow, _, fast = np.transpose([each.speeds for each in courses])
-    slowest, fastest = float(slow.min()), float(fast.max())
+    slowest = float(slow.min())
+    fastest = float(fast.max())
     span = f"{rounded(60.0 * slowest, 5)} to {rounded(60.0 * fastest, 5)} 1/min"
     factor = fastest / slowest
     smeared = f"; resonances are smeared by a factor of {rounded(factor, 3)}" if factor >= SMEARED else ""
@@ -306,12 +307,14 @@ def _lines_of(
     step = spectrum[0][1]
     found: dict[str, LineFamily | None] = {}
     for part, tone in tones.items():
-        nominal, distance = tone.order * diagnosis.speed, tone.modulation * diagnosis.speed
+        nominal = tone.order * diagnosis.speed
+        distance = tone.modulation * diagnosis.speed
         at = named.get(part, nominal)
         if not 8.0 * step <= at <= 0.9 * reached:
             found[part] = None
             continue
-        low, high = tone.lowest / tone.order - 1.0, tone.highest / tone.order - 1.0
+        low = tone.lowest / tone.order - 1.0
+        high = tone.highest / tone.order - 1.0
         slip = 0.0 if part in named else max(-low, high, 0.0)
         lines = diagnostics.find_lines(spectrum, at, distance=distance, slip=slip)
         off = lines.frequency[0] / nominal - 1.0 if part in named else lines.deviation
@@ -335,7 +338,8 @@ def _say_lines(
         if lines is None:
             rows.append([diagnosis.name(part), expected, "not resolved", *["–"] * 6])
             continue
-        line, height = lines.frequency[0], lines.amplitude[0]
+        line = lines.frequency[0]
+        height = lines.amplitude[0]
         sides = "±{:.4g}: {:.2f}, {:.2f}".format(lines.distance, *lines.side_bands[0] / height)
         stand = " ".join(str(n + 1) for n in np.flatnonzero(lines.prominent)) or "–"
         seen = [f"{line:.2f}", f"{line / diagnosis.speed:.3f}", f"{signed(100 * lines.deviation, 2)} %"]

@@ -46,7 +46,8 @@ def _document(found: Optimised) -> dict[str, Any]:
 
 def _columns(found: Optimised) -> dict[str, Array]:
     """Numbers of the bands that were changed, by the titles of their columns."""
-    changed, units = found.after.changed, found.measure.units
+    changed = found.after.changed
+    units = found.measure.units
     columns = {
         "wavelength [m]": found.after.changed_wavelength,
         "frequency [Hz]": np.sqrt(np.prod(found.after.edges(found.case.speed), axis=0)),

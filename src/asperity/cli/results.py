@@ -83,7 +83,8 @@ def compare_runs(paths: Sequence[Path], target: Path) -> None:
     folder = target.parent if target.suffix.lower() == ".html" else target
     require_writable(folder, "comparison")
     found = comparison_of(paths)
-    table, names = found.table, found.names
+    table = found.table
+    names = found.names
     keys = [[i["key"], *("–" if v is None else str(v) for v in i["values"])] for i in found.keys]
     if keys:
         say_table("Keys that differ", ["key", *names], keys, width=120)

@@ -60,7 +60,8 @@ def show_surface(
     """
     typed = _typed(recipe, options)
     steps = recipes.Recipe.read(typed, Origin("options"))
-    array, index = steps.array, steps.index
+    array = steps.array
+    index = steps.index
     if picture is None:
         chosen = [re.sub(r"[^\w.]+", "-", str(part)) for part in (array, index) if part is not None]
         picture = Path("-".join([file.stem, *chosen, "surface.png"]))

@@ -144,7 +144,8 @@ def _solved(half_space: HalfSpace, b: Block, positions: slice, device: Device) -
 
     Nothing outside of an overlap can carry pressure, so that no solution depends on the size of the box.
     """
-    xp, influence = device.xp, half_space.influence
+    xp = device.xp
+    influence = half_space.influence
     rows = xp.arange(positions.start, positions.stop)[:, None] * b.stride + xp.arange(len(b.body))
     gap = xp.asarray(b.body) + xp.asarray(b.planes[positions])[:, None, None] - xp.asarray(b.rows)[rows]
     pressure = xp.zeros_like(gap)

@@ -127,7 +127,8 @@ class RollingEllipse:
         a, b = self.semi_axes
         c11, c22, c23 = self.coefficients
         g = self.shear_modulus
-        l1, l2 = 8.0 * a / (3.0 * g * c11), 8.0 * a / (3.0 * g * c22)
+        l1 = 8.0 * a / (3.0 * g * c11)
+        l2 = 8.0 * a / (3.0 * g * c22)
         l3 = math.pi * a * math.sqrt(a / b) / (4.0 * g * c23)
         y = b * (2.0 * (np.arange(STRIPS) + 0.5) / STRIPS - 1.0)
         edge = a * np.sqrt(1.0 - (y / b) ** 2)

@@ -72,7 +72,8 @@ class Softness(NamedTuple):
 
 def check_edges(edges: Edges, half_space: "HalfSpace", shape: tuple[int, int]) -> None:
     """Refuse edges that are on other cells than a surface of so many rows and lines, or on unfit ones."""
-    what, remedy = "edges of a contact", "Lay them on the cells of the contact."
+    what = "edges of a contact"
+    remedy = "Lay them on the cells of the contact."
     own = edges.distance.shape
     given = half_space.spacing
     require(own == shape, what, f"shape {own}", f"shape {shape}", remedy)
@@ -107,6 +108,7 @@ def _kept(place: Array, slant: Array) -> Array:
     x = (place - FIRST) * PER_UNIT
     y = np.sqrt(slant) * (SLANTS - 1)
     i, j = (np.minimum(each.astype(int), most) for each, most in ((x, KNOTS - 2), (y, SLANTS - 2)))
-    x, y = x - i, y - j
+    x = x - i
+    y = y - j
     one, other = ((1.0 - x) * KEPT[j + k, i] + x * KEPT[j + k, i + 1] for k in (0, 1))
     return np.maximum((1.0 - y) * one + y * other, LEAST)

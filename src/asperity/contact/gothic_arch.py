@@ -159,7 +159,8 @@ class FourPointBall:
     @cached_property
     def _lines(self) -> Array:
         """How each line is pressed by nearing and by shifting, (2, 2)."""
-        sine, cosine = math.sin(self.arch.contact_angle), math.cos(self.arch.contact_angle)
+        sine = math.sin(self.arch.contact_angle)
+        cosine = math.cos(self.arch.contact_angle)
         return np.array([[cosine, sine], [cosine, -sine]])
 
     def approaches(self, nearer: float, shifted: float) -> Array:

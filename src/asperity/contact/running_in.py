@@ -89,7 +89,8 @@ def run_in(
         "counts": np.zeros(4, dtype=np.int64),
         "largest": np.empty(0),
     }
-    lowering, touched = state["lowering"], state["touched"]
+    lowering = state["lowering"]
+    touched = state["touched"]
     while not job.done(state["largest"]):
         before = lowering.copy()
         state["counts"] = state["counts"] + _pass(heights, state, job, workers, progress)

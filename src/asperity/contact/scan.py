@@ -198,11 +198,13 @@ class ScanJob:
     edges: Edges | None = None  # of the surface, on the same rows
 
     def __post_init__(self) -> None:
-        cells, (n, width) = self.half_space.shape, self.surface.shape
+        cells = self.half_space.shape
+        n, width = self.surface.shape
         allowed = f"a finite array of the half-space's shape {cells}"
         body = finite_array("body of the scan", self.body, allowed, shape=cells)
         check_window("the scan", cells, (n, width))
-        what, allowed = "approaches of the scan", "finite, increasing lengths in m"
+        what = "approaches of the scan"
+        allowed = "finite, increasing lengths in m"
         approaches = finite_array(what, np.atleast_1d(self.approaches), allowed, rising=True)
         require(approaches.size, what, "none", allowed)
         if self.edges is not None:
@@ -273,7 +275,8 @@ class ScanJob:
 
     def solve(self, rows: Array, planes: Array, edges: Edges | None = None) -> dict[str, NDArray[Any]]:
         """Forces of a block from a cold start, N, (k, positions), and its `Counts`, as a cache keeps them."""
-        space, stride = self.half_space, self.stride
+        space = self.half_space
+        stride = self.stride
         soft = None if edges is None else space.softness(edges)
         block = space.block(
             rows, self.body, planes, self.approaches, stride, self.rtol, self.single, soft=soft

@@ -117,7 +117,8 @@ class FrictionalHalfSpace:
         known = all(isinstance(each, Material) for each in bodies)
         require(known, "bodies", arguments.shown(bodies), allowed)
         refuse_period(half_space, "a contact with friction")
-        self.half_space, self.coupled = half_space, coupled
+        self.half_space = half_space
+        self.coupled = coupled
         self.friction = friction if isinstance(friction, Friction) else Friction(friction)
         nu = np.array([body.poisson_ratio for body in bodies])
         compliance = 2.0 * (1.0 + nu) / np.array([body.youngs_modulus for body in bodies])  # 1/G
@@ -265,7 +266,8 @@ class FrictionalHalfSpace:
         against it, which is the gap by a traction (2 nx - 1, 2 ny - 1). And its own by traction.
         """
         if (ahead, steady) not in self._influences:
-            (nx, ny), (dx, dy) = self.half_space.shape, self.half_space.spacing
+            nx, ny = self.half_space.shape
+            dx, dy = self.half_space.spacing
             x = dx * np.arange(1.0 - nx, nx)[:, None] + ahead
             y = dy * np.arange(1.0 - ny, ny)[None, :]
             found = kernel.traction_displacement(x, y, dx, dy, self.poisson_ratio)
@@ -275,7 +277,8 @@ class FrictionalHalfSpace:
                 spread = self.unlikeness / math.pi * kernel.pressure_displacement(x, y, dx, dy)
             if steady:
                 here, spread_here, _ = self._influence(0.0, False)
-                traction, spread = here - traction, spread_here - spread
+                traction = here - traction
+                spread = spread_here - spread
             own = float(traction[:2, nx - 1, ny - 1].mean())
             self._influences[ahead, steady] = traction, spread, own
         return self._influences[ahead, steady]
@@ -413,7 +416,8 @@ class FrictionalHalfSpace:
 
     def _rounds(self, normal: Contact, motion: tuple[float, ...], manner: _Manner) -> SlidingContact:
         """Solve until bound and pressure are those of the solution."""
-        space, before = self.half_space, manner.before
+        space = self.half_space
+        before = manner.before
         velocity = np.zeros(space.shape)
         slipped = np.zeros(space.shape, dtype=bool)
         past = np.zeros(space.shape, complex)
@@ -469,7 +473,8 @@ class FrictionalHalfSpace:
         carried, directions = (CARRIED, DIRECTIONS) if steady else (0.0, 2)
         single = self._convolution(nx, ny, ahead, steady, single=True)
         linear = kernel.linear_problem(box, single, self._taps, directions)
-        _cells(box.bound, box)[:], _cells(box.rigid, box)[:] = bound[inside], rigid[inside]
+        _cells(box.bound, box)[:] = bound[inside]
+        _cells(box.rigid, box)[:] = rigid[inside]
         if manner.start is not None:
             start = manner.start.traction[:, *inside]
             _cells(box.traction, box)[:] = start[0] + 1j * start[1]

@@ -345,7 +345,8 @@ class _Wearing(NamedTuple):
 
     def key(self, heights: Array) -> str:
         """Name in the store of what these heights become."""
-        space, friction = self.bodies.half_space, self.bodies.friction
+        space = self.bodies.half_space
+        friction = self.bodies.friction
         bodies = [self.bodies.shear_modulus, self.bodies.poisson_ratio, self.bodies.unlikeness]
         parameters = [list(space.spacing), space.modulus, space.hardness, bodies, self.bodies.coupled]
         parameters += [] if space.cells == "whole" else [space.cells]

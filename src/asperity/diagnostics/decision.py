@@ -327,7 +327,8 @@ def _of_parts(
     bare: Diagnosis, best: Hypothesis, rivals: Sequence[Hypothesis], tones: Mapping[str, Tone], margin: float
 ) -> Diagnosis:
     """What is said where a part is struck at the speed given."""
-    told, resolution = bare.told, bare.resolution
+    told = bare.told
+    resolution = bare.resolution
     better = [each for each in rivals if each.support >= SUPPORTED and each.score > best.score]
     otherwise = next((each for each in better if not near_speed(each, told)), None)
     there = otherwise is None and (bare.speed_is == CONFIRMED or best.support >= SUPPORTED)

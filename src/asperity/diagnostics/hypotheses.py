@@ -318,7 +318,8 @@ class BearingRecord:
             order = np.arange(1, count + 1)
             middle = np.rint(order * about / view.step).astype(int)
             inside = (middle >= LOWEST_PLACE) & (middle < view.amplitude.size - 3)
-            order, middle = order[inside], middle[inside]
+            order = order[inside]
+            middle = middle[inside]
             around = middle[:, None] + np.arange(-2, 3)
             place = np.take_along_axis(around, view.amplitude[around].argmax(axis=1)[:, None], axis=1)[:, 0]
             clear = view.amplitude[place] >= STANDS_OUT * view.background[place]

@@ -57,7 +57,8 @@ def filled_in(values: Array, most: float = np.inf) -> Runs:
     of it it is not: coarse steps, a slow tone and blows that die out have no such edges. What is constant at
     an end of the signal is clipped, and at more than so many places it is the silence between blows.
     """
-    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    low = float(np.nanmin(values))
+    high = float(np.nanmax(values))
     rounding = max(least_step(values), DIGITS * max(abs(low), abs(high)))
     margin = AT_THE_END * (high - low)
     found = []

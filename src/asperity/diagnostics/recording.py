@@ -85,7 +85,8 @@ class Recording:
         lost, told_lost = _lost(values, left_out, rate, still)
         _leave_out(left_out, lost)
         whole = values[~left_out] if left_out.any() else values
-        allowed, remedy = "a signal that varies", "Is the sensor connected?"
+        allowed = "a signal that varies"
+        remedy = "Is the sensor connected?"
         moves = whole.size > 0 and np.ptp(whole) > ROUNDING * max(whole.max(), -whole.min())
         require(moves, "signal", "the same number throughout", allowed, remedy)
         between = _between(left_out, values)
@@ -298,7 +299,8 @@ def _lost(values: Array, left_out: Mask, rate: float, still: float) -> tuple[lis
     """Where, of what is not left out, samples are missing that nothing marks, and what is told of that."""
     turn = min(still * rate, values.size)
     whole = [each for each in runs(~left_out) if each[1] - each[0] >= HOLDS_TONES]
-    jumps, other = list[Array](), list[Array]()
+    jumps = list[Array]()
+    other = list[Array]()
     for first, last in whole:
         stretch = values[first:last]
         jumps += [each + first for each in lost_between(stretch, turn)]

@@ -255,7 +255,8 @@ def fitted(
         if not fewer.free:
             received = f"data that leave every free key open ({'; '.join(each.words for each in left_open)})"
             raise InputError("fit", received, "data that tell one of them")
-        problem, minima = fewer, held
+        problem = fewer
+        minima = held
     runs.most = runs.done + _runs_of_ends(problem)
     return _told(case, problem, before, minima, left_open)
 
@@ -495,7 +496,8 @@ def _interval(problem: Problem, bowl: Bowl, number: int, half: float) -> tuple[E
     at = float(bowl.place[number])
     if problem.by_run and problem.free[number].band is not None:
         return End(at - half), End(at + half)
-    low, high = bowl.end(number, -half), bowl.end(number, half)
+    low = bowl.end(number, -half)
+    high = bowl.end(number, half)
     most = float(bowl.left @ bowl.left) + bowl.allowed
     allowed = [float(each[0]) for each in _scan(problem) if np.sum(problem.residuals(each) ** 2) <= most]
     if allowed and min(allowed) - 0.5 * SCANNED < low.place:

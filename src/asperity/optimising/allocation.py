@@ -36,7 +36,8 @@ class Limits:
         """Refuse bounds, of levels, rms height and price, that leave nothing between them."""
         crossed = np.flatnonzero(self.lowest > self.highest)
         if crossed.size:
-            low, high = self.lowest[crossed[0]], self.highest[crossed[0]]
+            low = self.lowest[crossed[0]]
+            high = self.highest[crossed[0]]
             received = f"{low:g} dB as lowest, {high:g} dB as highest, in band {crossed[0] + 1}"
             raise InputError("bounds of the levels", received, "lowest below highest in every band")
         least = rms_of(self.lowest)

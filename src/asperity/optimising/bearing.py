@@ -112,7 +112,8 @@ class PartBand:
         """It in words."""
         waves = "roughness"
         if self.orders:
-            first, last = min(self.orders), max(self.orders)
+            first = min(self.orders)
+            last = max(self.orders)
             waves = f"{first} waves" if first == last else f"{first} to {last} waves"
         return f"{ON[self.part].removeprefix('the ')}, {waves}"
 

@@ -138,7 +138,8 @@ class Optimised:
     def sentence(self) -> str:
         """What came of it, for people."""
         aim = self.aim
-        first, last = (self.before, self.after)
+        first = self.before
+        last = self.after
         rms = [engineering(rms_of(bands.levels[bands.changed]), "m") for bands in (first, last)]
         units = written_units(self.measure.units)
         told = [

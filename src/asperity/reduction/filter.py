@@ -375,7 +375,8 @@ def _target(contact_filter: ContactFilter, wavenumber: Array) -> Array:
 
     Under the printed normalisation it goes on to one at wavenumber zero.
     """
-    known, magnitude = contact_filter.wavenumber, contact_filter.magnitude
+    known = contact_filter.wavenumber
+    magnitude = contact_filter.magnitude
     inside = np.log(np.clip(wavenumber, known[0], known[-1]))
     found = np.exp(shape_preserving(np.log(known), np.log(magnitude), inside))
     if contact_filter.normalise == "low-wavenumber":

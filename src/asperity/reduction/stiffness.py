@@ -54,7 +54,8 @@ class ForceCurve:
         g = continued_to_touch(s, f[None] ** (1.0 / exponent))[0]
         first = int(np.argmax(g > 0.0))
         slope = np.diff(g)[first - 1] / np.diff(s)[first - 1] if first else monotone_slopes(s, g)[0]
-        s, g = s[first:], g[first:]
+        s = s[first:]
+        g = g[first:]
         s = np.concatenate([[s[0] - g[0] / slope], s])
         g = np.concatenate([[0.0], g])
         slopes = monotone_slopes(s, g)
@@ -244,8 +245,10 @@ def _spread(spare: tuple[int, int], count: int) -> list[tuple[int, int]]:
 def weighted_mean(heights: Array, weights: Array) -> float:
     """Mean height, m, under a patch at the middle of a sample of odd sides, by its `punch_weights`."""
     mx, my = (min(w, h) // 2 for w, h in zip(weights.shape, heights.shape, strict=True))
-    cx, cy = heights.shape[0] // 2, heights.shape[1] // 2
-    wx, wy = weights.shape[0] // 2, weights.shape[1] // 2
+    cx = heights.shape[0] // 2
+    cy = heights.shape[1] // 2
+    wx = weights.shape[0] // 2
+    wy = weights.shape[1] // 2
     inner = weights[wx - mx : wx + mx + 1, wy - my : wy + my + 1]
     return float(np.vdot(heights[cx - mx : cx + mx + 1, cy - my : cy + my + 1], inner) / inner.sum())
 

@@ -53,7 +53,8 @@ class StateTexture:
 
         That is of its largest height. A state is kept from which no line reaches further.
         """
-        states, heights = self.approaches, self.heights
+        states = self.approaches
+        heights = self.heights
         allowed = share * float(np.abs(heights).max(initial=0.0))
         if np.abs(heights - heights[0]).max(initial=0.0) <= allowed:
             return StateTexture(heights[:1], states[:1], self.start, self.spacing)

@@ -51,7 +51,8 @@ class TractionStates:
     @property
     def quantities(self) -> dict[str, tuple[str, Array]]:
         """Unit and values (2, samples, n), rough and smooth, of each by its name."""
-        k, c = self.tangential, self.creep
+        k = self.tangential
+        c = self.creep
         return {
             "real area": ("m^2", self.area), "normal stiffness": ("N/m", self.normal),
             "stiffness along": ("N/m", k[..., 0, 0]), "stiffness across": ("N/m", k[..., 1, 1]),
@@ -141,7 +142,8 @@ def traction_states(
     uncoupled = FrictionalHalfSpace(half_space, bodies, UNLIMITED, coupled=False)
     if uncoupled.unlikeness:  # a warning tells what is neglected, once
         uncoupled.shift(half_space.solve(gap, approach=r[-1]))
-    g, nu = uncoupled.shear_modulus, uncoupled.poisson_ratio
+    g = uncoupled.shear_modulus
+    nu = uncoupled.poisson_ratio
     both = Material("both", 2.0 * g * (1.0 + nu), nu, 1.0)
     stuck = FrictionalHalfSpace(half_space, (both, both), UNLIMITED)
 

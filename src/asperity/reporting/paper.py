@@ -224,7 +224,8 @@ def _draw_boxes(axes: Axes, mark: chart.Boxes, look: dict[str, Any]) -> None:
     high = mark.high
     if _is_endless(mark):
         look["zorder"] = 0.2
-        x, y = axes.get_xlim(), axes.get_ylim()
+        x = axes.get_xlim()
+        y = axes.get_ylim()
         left, right = (np.clip(edge, min(x), max(x)) for edge in (left, right))
         low, high = (np.clip(edge, min(y), max(y)) for edge in (low, high))
     corners = np.stack([left, low, left, high, right, high, right, low], axis=-1).reshape(-1, 4, 2)

@@ -26,7 +26,8 @@ def softened(
     bodies = course.bodies
     stiffness, motion = set_down(ground, bodies, system, course.at_start, entering=not course.settled)
     own = alternating(system)
-    least, thrown = ground.alternating + own, ground.thrown + own
+    least = ground.alternating + own
+    thrown = ground.thrown + own
     direct = system.own + ground.shapes**2 @ system.coefficients[3, : len(ground.natural)]
     resonances = steps.contact_resonance(stiffness, direct, least, system.time_step)[~ground.on_rail]
     fastest = float(resonances.max(initial=0.0))
@@ -124,7 +125,8 @@ def system_of(
 def alternating(system: System) -> Array:
     """Least alternating compliance of the body at each contact (n,), m/N: of all its contacts at once."""
     found = np.zeros(len(system.body))
-    d, f = (system.core_shapes.shape[1], system.shapes.shape[1])
+    d = system.core_shapes.shape[1]
+    f = system.shapes.shape[1]
     first = len(system.stiffness) - f * len(system.core_step)  # of the modes of bodies
     modes = steps.alternating_of_modes(system.coefficients)[first:]
     for b, step in enumerate(system.core_step):

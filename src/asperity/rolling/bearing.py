@@ -413,7 +413,8 @@ class _Turning:
             by_ball = values[: each * balls].reshape(balls, each, -1)[:, : 2 * flanks]
             return by_ball.reshape(balls, flanks, 2, -1).transpose(1, 2, 0, 3)
 
-        forces, reached = of_flanks(run.contact_force), of_flanks(run.reached)
+        forces = of_flanks(run.contact_force)
+        reached = of_flanks(run.reached)
         inner, outer = forces[0] if flanks == 1 else forces.sum(axis=0)
         moved = np.stack(run.degrees_of_freedom[:balls], axis=1)
         return RolledBearing(
@@ -476,14 +477,16 @@ class _Turning:
 
     def loaded(self, mechanism: Mechanism, loads: tuple[float, float]) -> Mechanism:
         """Press the rings together, with springs that are free of force where they then are."""
-        inner, outer = self.rings.inner, self.rings.outer
+        inner = self.rings.inner
+        outer = self.rings.outer
         pressed = [np.zeros(len(each.natural_frequencies)) for each in self.rings.structures]
         pressed[INNER] = inner.pressed(*loads)
         pressed[OUTER] = -outer.pressed(*loads)
         load = self.usual_load(*loads)
         require(load > 0.0, "load", "none", "a load, or a preload")
         held = np.maximum(inner.frequencies, outer.frequencies)
-        what, remedy = "rings", "Give the shaft or the housing a stiffness."
+        what = "rings"
+        remedy = "Give the shaft or the housing a stiffness."
         require(np.all(held > 0.0), what, "both free", "one that is held", remedy)
         loose = [
             replace(inner, frequencies=np.zeros(len(held))),

@@ -176,7 +176,8 @@ def _channels(rail: RailBetween, starts: Array, on_rail: Flags) -> tuple[Channel
     contacts = np.flatnonzero(on_rail)
     none = np.zeros(0)
     weights = [each.kernel.weights for each in tables]
-    bays, period = rail.kernel.track.cell_bays, rail.kernel.track.period
+    bays = rail.kernel.track.cell_bays
+    period = rail.kernel.track.period
     place = np.zeros(on_rail.size)
     place[contacts] = starts / period
     laid = [

@@ -110,7 +110,8 @@ def equilibrium(
             approach, force, stiffness, gradient = state(x + move)
             if float(gradient @ move) <= 0.5 * abs(slope):
                 break
-            move, slope = 0.5 * move, 0.5 * slope
+            move = 0.5 * move
+            slope = 0.5 * slope
         most = float(np.clip(2.0 * np.abs(shapes @ move).max(), FIRST_MOVE, LARGEST_MOVE))
         x = x + move
     raise ComputationError(

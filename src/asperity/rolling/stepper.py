@@ -41,7 +41,8 @@ class Stepper:
     def __post_init__(self) -> None:
         n = self.course.contacts
         steps = self.course.total + 1
-        (b, states), (sensors, modes) = self.system.core_pressed.shape, self.system.sensors.shape
+        b, states = self.system.core_pressed.shape
+        sensors, modes = self.system.sensors.shape
         force, approach, over, rolling = np.zeros((4, n, steps))
         core = np.zeros((b, states // 2, steps))
         acceleration = np.zeros((sensors, steps))
@@ -114,7 +115,8 @@ class Stepper:
         done = int(self.motion.counts[0])
         self._hold(done + 1)
         stop = min(stop, self.end)
-        state, along = (self.system, self.motion, self.record), (self.shapes, self.rates, self.offset)
+        state = (self.system, self.motion, self.record)
+        along = (self.shapes, self.rates, self.offset)
         if not self.stepped:
             sound = bool(stepping.roll_prepared(*state, self.laid, *along, stop, largest))
         else:
@@ -181,7 +183,8 @@ class Stepper:
         return solve(_evaluate, law, DRY, step, free, load, guess, damping, False, STEPPED_TOLERANCE, False)
 
     def _ran_away(self) -> ComputationError:
-        motion, course = self.motion, self.course
+        motion = self.motion
+        course = self.course
         step = int(motion.counts[0])
         worst = int(np.argmax(np.abs(motion.force[0])))
         return ComputationError(

@@ -76,7 +76,8 @@ def raceway_on(
     rows = stride * fft.next_fast_len(math.ceil(around / along / stride), real=True)
     if isinstance(contact, Hertz):
         # a ball sinks into a hollow until it lands on edges, which may be as far out
-        rx, ry = 8.0 * contact.radius_x, 8.0 * contact.radius_y
+        rx = 8.0 * contact.radius_x
+        ry = 8.0 * contact.radius_y
         sinks = max((min(f.depth, f.size[0] ** 2 / rx, f.size[1] ** 2 / ry) for f in faults), default=0.0)
         half = HALF_WINDOW * axes[1] + 0.5 * math.sqrt(ry * sinks)
         lines = 2 * math.ceil(half / across) + 1

@@ -33,7 +33,8 @@ def bearing_findings(case: BearingUnderLoad, runs: dict[str, RolledBearing]) -> 
 
 def out_of_place(case: BearingUnderLoad, law: str, run: RolledBearing) -> Iterator[Finding]:
     """Rings that are farther off than balls let them, and balls that do not carry the load in the mean."""
-    of, angle = case.bearing.bearing, case.static.contact_angle
+    of = case.bearing.bearing
+    angle = case.static.contact_angle
     moved = max(float(np.abs(each).max()) for each in (run.inner_motion, run.outer_motion))
     yield from beyond(
         "displacement of a ring over the diameter of a ball",

@@ -135,7 +135,8 @@ def standard_power(computed: compute.Computed) -> Values:
     change = 10.0 * np.log10(np.mean(10.0 ** (changes / 10.0), axis=1))
     at = np.searchsorted(_numbers(computed.band), _numbers(centres))
     levels = linear + np.where(np.isfinite(change), change, 0.0)[:, None, at]
-    power, standard = schema.SOUND_POWER_LEVEL, schema.CNOSSOS_SOUND_POWER_LEVEL_A
+    power = schema.SOUND_POWER_LEVEL
+    standard = schema.CNOSSOS_SOUND_POWER_LEVEL_A
     of_standard = a_weighted_total(filtered, centres)
     return {
         schema.SOURCE: SOURCES,

@@ -216,7 +216,8 @@ def _passed(computed: Computed, progress: Progress) -> tuple[Array, ...]:
     step = computed.case.time_step
     record = step * (len(computed.first.time) - 1)
     rolled = Path.laid(0.0, computed.case.speed, step, record, step * settled).positions[0]
-    kernel, points = computed.rail.kernel, computed.case.point_positions
+    kernel = computed.rail.kernel
+    points = computed.case.point_positions
     parts = [
         passed_points(kernel, forces[:, k], origin + rolled - rolled[0], points, settled, progress)
         for k, origin in enumerate(origins)

@@ -60,7 +60,8 @@ def friction_of(case: Case) -> Friction:
 
 def smooth_with_friction(of: PreparedCase, friction: Friction) -> tuple[FrictionalHalfSpace, Contact]:
     """What rolls, as the first body, on what it rolls over; and their smooth contact under the load."""
-    case, shape = of.case, of.shape
+    case = of.case
+    shape = of.shape
     space = shape.whole_half_space(case.contact.hardness)
     bodies = case.rolling.material, case.rolled_over.material
     smooth = space.solve(shape.body, load=shape.load, rtol=case.numerics.rtol)

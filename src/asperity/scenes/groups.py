@@ -160,7 +160,8 @@ def contact_group(computed: Computed, found: Sequence[Finding], population: Sequ
 
     With the findings that hold the contact to the range of its laws, and the answers about its population.
     """
-    shape, reduction = computed.shape, computed.reduction
+    shape = computed.shape
+    reduction = computed.reduction
     laid_out = _hertz_only(shape) if reduction is None else _reduced(computed, reduction)
     if reduction is not None:
         laid_out[contact.POPULATION] = [_asked(answer) for answer in population]
@@ -225,7 +226,8 @@ def _reduced(computed: Computed, reduction: Reduction) -> Values:
 def _filters(reduction: Reduction) -> Values:
     """Filters on the approaches of all states; NaN where a state carries too little load to have one."""
     main, *others = reduction.filters.values()
-    estimated, states = main.contact_filter, reduction.approaches
+    estimated = main.contact_filter
+    states = reduction.approaches
     rows = np.searchsorted(states, estimated.approaches)
     wavenumber = estimated.wavenumber
     ratio = estimated.asymptotic_stiffness / estimated.tangent_stiffness

@@ -356,7 +356,8 @@ def _of_roughness(over_frequency: xarray.Dataset) -> list[Condition]:
 
 def _of_decay(over_frequency: xarray.Dataset) -> Condition:
     """Vertical decay rate of the rail against its lower limit; in bands in which it was measured, that."""
-    band, rate = over_frequency[spectra.BAND.name].values, over_frequency[schema.BAND_DECAY_RATE.name].values
+    band = over_frequency[spectra.BAND.name].values
+    rate = over_frequency[schema.BAND_DECAY_RATE.name].values
     if schema.MEASURED_DECAY_RATE.name in over_frequency:
         measured = over_frequency[schema.MEASURED_DECAY_RATE.name].values
         rate = np.where(np.isfinite(measured), measured, rate)

@@ -121,7 +121,8 @@ def radiation(computed: compute.Computed, values: Array, side: SidewaysPower | N
     side : SidewaysPower or None
         That of what moves sideways, if something does.
     """
-    case, band = computed.case, computed.band
+    case = computed.case
+    band = computed.band
     edges = band / HALF_BAND, band * HALF_BAND
     density, of_modes = _radiated(computed)
 

@@ -28,7 +28,8 @@ def plan(prepared: PreparedCase, work: Work, choice: LawChoice | None = None) ->
     """List what will be computed and how much work it is, from `asperity.scenarios.preparing.expect`."""
     case = prepared.case
     nx, ny = prepared.shape.body.shape
-    contact, settling = case.contact, case.settled_time
+    contact = case.contact
+    settling = case.settled_time
     states = STATES if contact.approaches is None else len(contact.approaches)
     first, last = case.rolled_range
     points = round((last - first) / contact.spacing) + 1

@@ -111,7 +111,8 @@ def _filters(reduction: Reduction) -> Iterator[Finding]:
 
 def _maps(computed: Computed, reduction: Reduction, laws: tuple[str, ...]) -> Iterator[Finding]:
     """Whether measured maps differ in stiffness by more than places of one map do."""
-    maps, stiffnesses = computed.textures.maps, reduction.pressed.stiffnesses
+    maps = computed.textures.maps
+    stiffnesses = reduction.pressed.stiffnesses
     if maps is computed.textures.strips or len(maps) < 2 or not stiffnesses.all():
         return
     shares = samples_of_maps(len(maps), computed.case.contact.samples)

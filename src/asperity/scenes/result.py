@@ -159,7 +159,8 @@ def _numerics(
 def _of_structure(computed: Computed) -> Iterator[tuple[str, str]]:
     over = computed.over
     if isinstance(over, RailBetween):
-        weights, step = computed.rail.kernel.weights, computed.rail.kernel.time_step
+        weights = computed.rail.kernel.weights
+        step = computed.rail.kernel.time_step
         yield "start positions of the moving kernel", f"{weights.shape[0]} in a bay"
         yield (
             "length of the moving kernel",

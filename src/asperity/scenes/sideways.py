@@ -56,7 +56,8 @@ class Sideways:
     @cached_property
     def stiffness(self) -> tuple[float, float]:
         """Of the contact under the load, normal and in stick, N/m."""
-        case, shape = self.computed.case, self.computed.shape
+        case = self.computed.case
+        shape = self.computed.shape
         materials = case.rolling.material, case.rolled_over.material
         return self.computed.stiffness, stick_stiffness(shape.semi_axes, materials)
 
@@ -211,7 +212,8 @@ def sideways_group(computed: compute.Computed) -> Values:
     found = computed.derived(sideways_of)
     if found is None:
         return {}
-    case, band = computed.case, computed.band
+    case = computed.case
+    band = computed.band
     contacts = len(computed.scene.offsets)
     limit = case.contact.friction * computed.shape.load
     step = found.lines[1] - found.lines[0]

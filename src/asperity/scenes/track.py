@@ -156,7 +156,8 @@ def stated_levels(case: Any, parts: Sequence[str], wavelength: Array) -> Array:
     where none does: of what was measured, in the bands of a corrugation on top, and of the combined texture
     where it is not stated of all that is rough.
     """
-    surface, rolling = case.surface, case.rolling
+    surface = case.surface
+    rolling = case.rolling
     found = {"rail": _stated(surface.spectrum, surface.level, wavelength)}
     if surface.rms is not None and surface.spectrum is None and surface.line is None:
         drawn = line_levels(SelfAffine(**self_affine_keys(surface)), wavelength)
@@ -308,7 +309,8 @@ def findings_of_losses(losses: Values) -> list[Finding]:
         return []
     bands, force = losses.values()
     worst = int(np.argmax(np.abs(force)))
-    level, frequency = force[worst], bands[worst]
+    level = force[worst]
+    frequency = bands[worst]
     meaning = "Nothing that answers after a force only has one loss factor at all frequencies, or any table"
     if off := [spectra.nominal_frequency(bands[i]) for i in np.flatnonzero(np.abs(force) > DOUBTFUL)]:
         meaning += f": read the one-third octaves of {', '.join(off)} with their error"
@@ -410,7 +412,8 @@ def planned_track(prepared: PreparedCase) -> list[tuple[str, str]]:
     if reason := noise.silent_wheel(case):
         known = f"rail and sleepers: {reason}"
     if np.ptp(prepared.textures.line) and asks_for_pass_by(case):
-        pads, diameter = cnossos_power.track_label(case), cnossos_power.wheel_label(case)
+        pads = cnossos_power.track_label(case)
+        diameter = cnossos_power.wheel_label(case)
         known += f"; by CNOSSOS-EU for {pads} pads and a wheel of {diameter}"
         doubts += cnossos_power.findings_of_labels(case)
     warn_of_findings(doubts)

@@ -53,7 +53,8 @@ def findings(
     With answers about its population. Which law to take instead is what the map of law errors chooses, where
     it knows of the case.
     """
-    case, reduction = computed.case, computed.reduction
+    case = computed.case
+    reduction = computed.reduction
     steps = (case.rolled_time + case.settled_time) / case.time_step
     worst = max(computed.runs, key=lambda law: computed.runs[law].unconverged_steps)
     missed = computed.runs[worst].unconverged_steps
@@ -287,7 +288,8 @@ def _isolated(case: Case, share: float) -> Finding:
 
 def _whole_cells(prepared: PreparedCase, pressed: PressedSamples) -> Iterator[Finding]:
     """Laws that solve the contact at each step on cells that are in contact or not: their stiffness jumps."""
-    case, shape = prepared.case, prepared.shape
+    case = prepared.case
+    shape = prepared.shape
     solving = tuple(law for law in case.laws if spec_of(law).solved_every_step)
     if not solving or (prepared.cells_of_heights or shape.cells) != "whole":
         return

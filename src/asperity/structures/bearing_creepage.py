@@ -63,7 +63,8 @@ def spin_creepage(bearing: BallBearing, angles: tuple[Array, Array], control: Ri
 
 def _spins(bearing: BallBearing, angles: tuple[Array, Array], axis: Array) -> tuple[Array, Array]:
     """Spins on the inner and the outer ring of balls that turn about an axis inclined by an angle, rad/m."""
-    radius, pitch = 0.5 * bearing.ball_diameter, 0.5 * bearing.pitch_diameter
+    radius = 0.5 * bearing.ball_diameter
+    pitch = 0.5 * bearing.pitch_diameter
     inner, outer = angles
     on_inner = np.sin(inner) / (pitch - radius * np.cos(inner)) + np.tan(inner - axis) / radius
     on_outer = np.sin(outer) / (pitch + radius * np.cos(outer)) - np.tan(outer - axis) / radius
@@ -119,7 +120,8 @@ def creepage_of(loaded: LoadedBearing) -> BearingCreepage:
     spins = np.where(by_outer, spin_creepage(of, angles, "outer"), spin_creepage(of, angles, "inner"))
     radius = 0.5 * of.ball_diameter
     axis = np.where(by_outer, ball_axis(of, angles, "outer"), ball_axis(of, angles, "inner"))
-    rims, sliding = list[Array](), list[Array]()
+    rims = list[Array]()
+    sliding = list[Array]()
     grooves = of.inner_conformity * of.ball_diameter, of.outer_conformity * of.ball_diameter
     contacts = of.inner_contact, of.outer_contact
     for spin, groove, contact, load, each in zip(spins, grooves, contacts, loads, axes, strict=True):

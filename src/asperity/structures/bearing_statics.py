@@ -226,7 +226,8 @@ def load_distribution(
     speed = not_negative("speed (1/s)", speed)
     preloaded = axial + bearing.preload
     held = radial + preloaded > 0.0 or bearing.radial_clearance < 0.0
-    allowed, remedy = "a radial or axial load, or a preload", "Without one the inner ring is loose."
+    allowed = "a radial or axial load, or a preload"
+    remedy = "Without one the inner ring is loose."
     require(held, "load", "none", allowed, remedy)
     angles = angles_of_cage(bearing, cage_angles)
     try:
@@ -476,7 +477,8 @@ def _pressed_unloaded(found: LoadedBearing) -> dict[str, list[tuple[float, str]]
     fit = f"{clearance} presses each ball with {rounded(squeezed, 4)} N"
     thrown = of.centrifugal_force(found.speed)
     turning = f"Centrifugal force alone is {rounded(thrown, 4)} N at {rounded(60.0 * found.speed, 5)} 1/min"
-    looser, slower = (squeezed, f"{fit}: take a looser fit"), (thrown, f"{turning}: run slower")
+    looser = (squeezed, f"{fit}: take a looser fit")
+    slower = (thrown, f"{turning}: run slower")
     return {"inner": [looser], "outer": [looser, slower]}
 
 

@@ -59,7 +59,8 @@ class Body:
         carried = self.contacts.T @ loads - self.stiffness @ hung - self.pressing
         if np.abs(carried).max(initial=0.0) > CARRIED * np.abs(self.pressing).max(initial=1.0):
             remedy = "Give it more contacts, or springs that hold it."
-            what, received = "contacts of a body", "too few: it falls or tilts"
+            what = "contacts of a body"
+            received = "too few: it falls or tilts"
             raise InputError(what, received, "a body that is held", remedy)
 
     @classmethod

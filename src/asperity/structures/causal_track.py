@@ -214,7 +214,8 @@ def _least_squares(linearised: Linearised, start: Array) -> Array:
         gain = 1.0 - (found[0] @ found[0]) / squares
         damping *= 0.1 if gain > 0.0 else 10.0
         if gain > 0.0:
-            unknowns, (residual, slope) = tried, found
+            unknowns = tried
+            residual, slope = found
         if 0.0 < gain < SETTLED or damping > 1e6:
             break
     return unknowns

@@ -225,7 +225,8 @@ def _scattering(amplitudes: Complex, supports: Complex, decays: Complex) -> _Sca
 
 def _joined(one: _Scattering, two: _Scattering) -> _Scattering:
     """Scattering of two stretches in a row (Redheffer's star product)."""
-    (r1, t1, u1, v1), (r2, t2, u2, v2) = one, two
+    r1, t1, u1, v1 = one
+    r2, t2, u2, v2 = two
     identity = np.eye(2)[:, :, None]
     right = _times(_inverse(identity - _times(v1, r2)), t1)
     left = _times(_inverse(identity - _times(r2, v1)), u2)
@@ -267,7 +268,8 @@ def _carry(amplitudes: Complex, supports: Complex, decays: Complex, right: _Half
         felt = np.sum(right.felt[behind[span]][:, None] * waves, axis=0)
         return decays[span][::-1, None] * (waves + supports[behind[span]] * amplitudes[:, None] * felt)
 
-    onwards, returned = one + 0j * decays[0], one + 0j * decays[0]
+    onwards = one + 0j * decays[0]
+    returned = one + 0j * decays[0]
     for span in range(count):
         onwards = _normed(forwards(span, onwards))[0]
         returned = _normed(backwards(count - 1 - span, returned))[0]
@@ -275,7 +277,8 @@ def _carry(amplitudes: Complex, supports: Complex, decays: Complex, right: _Half
     own = np.sum(slow.conj() * np.einsum("ijf,jf->if", returned, slow), axis=0)
     fast = _range_without(returned, own)
     steps = np.zeros_like(decays)
-    found[0, :, 0], found[0, :, 1] = slow, fast
+    found[0, :, 0] = slow
+    found[0, :, 1] = fast
     for span in range(count):
         moved = forwards(span, found[span, :, :1])[:, 0]
         if span + 1 < count:

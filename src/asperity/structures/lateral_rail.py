@@ -232,7 +232,8 @@ class LateralTrack(LateralParameters):
         square = omega**2
         e = self.centroid_height
         mass = self.track.mass_per_length
-        bending, torsion = self.bending_stiffness * losses, self.torsional_stiffness * losses
+        bending = self.bending_stiffness * losses
+        torsion = self.torsional_stiffness * losses
         soft = self.bending_stiffness / self.shear_stiffness  # EI/S, m²: both lose alike
         held = np.broadcast_to(foundation, (2, 2, len(omega)))
         turning = (self.polar_inertia + mass * e**2) * square - held[1, 1]

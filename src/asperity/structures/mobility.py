@@ -132,7 +132,8 @@ class Mobility:
         count = len(step)
         for lap in range(2):  # around the cell once to close it, and once more
             if lap:
-                after[0], before[0] = after[0] / (1.0 - around), before[0] / (1.0 - around)
+                after[0] = after[0] / (1.0 - around)
+                before[0] = before[0] / (1.0 - around)
             for span in range(count - 1, -1, -1):
                 following = (span + 1) % count
                 beyond = after[following] if lap or following else 0.0

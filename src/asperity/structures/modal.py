@@ -263,16 +263,19 @@ class ModalStructure(Modal):
 
     def _checked(self) -> tuple[Array, Array, Array, Array]:
         """Positions, mass-normalised shapes, frequencies and damping ratios, of fitting sizes."""
-        what, allowed = "positions of the modes (m)", "two or more rising finite numbers"
+        what = "positions of the modes (m)"
+        allowed = "two or more rising finite numbers"
         at = finite_array(what, self.positions, allowed, shape=(None,), rising=True)
         require(at.size > 1, what, count_of(at.size, "number"), allowed)
-        what, allowed = "natural frequencies (Hz)", "0 and more, below 10 MHz"
+        what = "natural frequencies (Hz)"
+        allowed = "0 and more, below 10 MHz"
         natural = finite_array(what, self.frequencies, allowed, shape=(None,), at_least=0.0, below=HIGHEST)
         count = natural.size
         allowed = f"finite numbers ({at.size}, {count}): a row for each position, a column for each mode"
         shapes = finite_array("mode shapes", self.mode_shapes, allowed, shape=(at.size, count))
         given = self.damping if np.ndim(self.damping) else np.full(count, self.damping)
-        what, allowed = "damping ratios", "0 and more, below 1"
+        what = "damping ratios"
+        allowed = "0 and more, below 1"
         ratios = finite_array(what, given, allowed, count=count, at_least=0.0, below=1.0)
         if self.modal_masses is not None:
             masses = finite_array("modal masses (kg)", self.modal_masses, "above 0", count=count, above=0.0)

@@ -311,7 +311,8 @@ def _table_of_modes(file: Path, place: str, dimension: str) -> dict[str, Array]:
     table_of = _TABLE.replace("position (m)", f"{place} ({dimension})")
     found: dict[str, Array] = {}
     rows: list[list[float]] = []
-    unit, residual = math.nan, math.nan
+    unit = math.nan
+    residual = math.nan
     content = read_text(file, file.name, table_of, largest=LARGEST_FILE)
     refuse_decimal_commas(content, file.name)
     for number, cells in lines_of_cells(content):

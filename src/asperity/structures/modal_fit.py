@@ -57,7 +57,8 @@ def vector_fit(
         solution = least_squares(matrix, right)
         error = float(np.linalg.norm(matrix @ solution - right) / scale) if scale > 0.0 else 0.0
         if error < least:
-            best, least = moved, error
+            best = moved
+            least = error
     if not np.isfinite(least):
         raise ComputationError("the rational fit broke down", "fewer poles, or a smoother response")
     return best
@@ -362,7 +363,8 @@ def _modal_masses(frequency: Array, flexible: Complex, weights: Array, poles: Co
     kept = np.flatnonzero(shares**2 > max(NEGLIGIBLE * error**2, 1e-12 * shares.max(initial=0.0) ** 2))
     kept = kept[np.argsort(natural[kept])]
     shares, error = _not_negative(matrix[:, kept] / size[kept], right)
-    kept, shares = kept[shares > 0.0], shares[shares > 0.0]
+    kept = kept[shares > 0.0]
+    shares = shares[shares > 0.0]
     return (natural[kept], ratio[kept], size[kept] / shares), error
 
 

@@ -139,7 +139,8 @@ def moving_kernel(
     """
     if not isinstance(track, Track):
         raise InputError("track", shown(track), "a Track, as Track.named('x2000')")
-    time_step, speed = positive("time step (s)", time_step), not_negative("speed (m/s)", speed)
+    time_step = positive("time step (s)", time_step)
+    speed = not_negative("speed (m/s)", speed)
     positions = whole("start positions", positions, "a whole number, 1 or more", at_least=1)
     if duration is not None:
         duration = positive("duration (s)", duration)

@@ -112,7 +112,8 @@ def doubts_of(outline: Array, radius: float) -> Iterator[str]:
         )
     turns, (r, z) = _turns_to_and_fro(outline)
     if turns >= TO_AND_FRO:
-        r, z = 1e3 * r, 1e3 * z
+        r = 1e3 * r
+        z = 1e3 * z
         yield (
             f"an outline that turns to and fro {turns} times in a row, up to ({r:.4g} mm, {z:.4g} mm): a "
             "web that zigzags is none of a wheel. List its points in order, and smooth what was digitised."
@@ -158,11 +159,13 @@ def _crossing(outline: Array) -> tuple[int, int] | None:
 
     def side(a: Array, b: Array, c: Array) -> Array:
         """Side of the lines from a to b on which points c lie."""
-        along, away = b - a, c - a
+        along = b - a
+        away = c - a
         area = along[..., 0] * away[..., 1] - along[..., 1] * away[..., 0]
         return np.sign(np.where(np.abs(area) < 1e-12 * np.abs(outline).max() ** 2, 0.0, area))
 
-    a, b = outline[:, None], to[:, None]
+    a = outline[:, None]
+    b = to[:, None]
     apart = side(a, b, outline) * side(a, b, to) > 0.0
     low = np.minimum(outline, to)
     high = np.maximum(outline, to)
@@ -286,7 +289,8 @@ def _distances(points: Array, a: Array, b: Array) -> Array:
 
 def _areas(corners: Array) -> Array:
     """Twice the areas of triangles (e, 3, 2), positive if they are counterclockwise."""
-    first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    first = corners[:, 1] - corners[:, 0]
+    second = corners[:, 2] - corners[:, 0]
     return first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
 
 
@@ -405,7 +409,8 @@ class WheelSection:
         """Outline (n, 2), radius and axial place, m, of a wheel of a radius at its running circle, m."""
         rim = positive("radius of the wheel (m)", radius) - self.rim_thickness
         inside = self.rim_width - BACK
-        what, allowed = "section of the wheel", "bore, hub and rim one outside the other"
+        what = "section of the wheel"
+        allowed = "bore, hub and rim one outside the other"
         received = f"radii of {self.bore_radius:g}, {self.hub_radius:g} and, inside the rim, {rim:g} m"
         require(self.bore_radius < self.hub_radius < rim, what, received, allowed)
         allowed = "a tread as wide as the running circle and the flange need"

@@ -80,7 +80,8 @@ class Rail:
         mass = self.mass_per_length
         if self.shear_stiffness is None or self.rotary_inertia is None:
             return float(k**2 * np.sqrt(bending / mass) / (2.0 * np.pi))
-        shear, inertia = self.shear_stiffness, self.rotary_inertia
+        shear = self.shear_stiffness
+        inertia = self.rotary_inertia
         middle = mass + (inertia + mass * bending / shear) * k**2
         root = np.sqrt(middle**2 - 4.0 * mass * inertia / shear * bending * k**4)
         return float(np.sqrt(2.0 * bending * k**4 / (middle + root)) / (2.0 * np.pi))
@@ -213,7 +214,8 @@ def periodic_waves(
     sine = np.sin(phase)
     cosine = np.cos(phase)
     unit = 1j * amplitudes * sine  # a_i per support stiffness
-    (c_1, c_2), (u_1, u_2) = cosine, unit
+    c_1, c_2 = cosine
+    u_1, u_2 = unit
     total = c_1 + c_2 + support * (u_1 + u_2)
     product = c_1 * c_2 + support * (u_1 * c_2 + u_2 * c_1)
     root = np.sqrt(total**2 - 4.0 * product)

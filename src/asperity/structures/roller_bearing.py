@@ -227,10 +227,12 @@ class RollerBearing(RollingBearing):
         require(cone, "contact_angle", received, allowed, "Give both, or no taper.")
         for name in ("rib_stiffness", "rib_height"):
             held = getattr(self, name) is None or self.taper > 0.0
-            received, remedy = "one of rollers that do not taper", "Give a taper, or leave it out."
+            received = "one of rollers that do not taper"
+            remedy = "Give a taper, or leave it out."
             require(held, name, received, "none", remedy)
         height = self.rib_height or 0.0
-        received, allowed = f"{rounded(1e3 * height, 4)} mm", f"less than half a roller's {D * 1e3:.4g} mm"
+        received = f"{rounded(1e3 * height, 4)} mm"
+        allowed = f"less than half a roller's {D * 1e3:.4g} mm"
         require(height < 0.5 * D, "rib_height", received, allowed, "It counts from the inner raceway.")
         _ = self.profile  # checks the crowning
 

@@ -329,7 +329,8 @@ def _solved(
     azimuth = bearing.azimuths(angles)
     moved = _followed(bearing, azimuth)
     lift = bearing.centrifugal_force(speed) * bearing.flung_outwards(bearing.contact_angle)
-    inner, outer = bearing.inner_contact, bearing.outer_contact
+    inner = bearing.inner_contact
+    outer = bearing.outer_contact
     overlap = 0.5 * max(-bearing.clearance, 0.0)
     scale = max(load[0], load[2], float(np.abs(load[MOMENTS]).max()) / (0.5 * bearing.roller_length))
     scale = max(scale, inner.force(0.5 * overlap))

@@ -195,7 +195,8 @@ def stiffness_table(
         angles = finite_array(
             "angles of the cage (rad)", np.atleast_1d(np.asarray(cage_angles)), shape=(None,)
         )
-    cosine, sine = math.cos(load_direction), math.sin(load_direction)
+    cosine = math.cos(load_direction)
+    sine = math.sin(load_direction)
     turn = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
 
     def at(place: Sequence[int]) -> list[Array]:

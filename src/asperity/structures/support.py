@@ -313,7 +313,8 @@ class BendingSleeper(Element):
 
     def _along(self, waves: "_SleeperWaves", value: Callable[[float], Array]) -> Array:
         """Integral over the half of what there is at a distance from the middle."""
-        seat, half = 0.5 * self.seat_distance, 0.5 * self.length
+        seat = 0.5 * self.seat_distance
+        half = 0.5 * self.length
         most = float(np.abs(waves.wavenumber).max(initial=0.0))
         node, weight = np.polynomial.legendre.leggauss(8 + math.ceil(most * half))
         total = np.zeros(np.shape(waves.wavenumber))

@@ -453,7 +453,8 @@ class Track(track_parameters.TrackParameters):
         rigid sleepers, and without the masses of ballast and rail dampers.
         """
         rail = self.mass_per_length * self.sleeper_spacing
-        pad, ballast = self.pad_stiffness, self._below_sleeper
+        pad = self.pad_stiffness
+        ballast = self._below_sleeper
         if self._moving_sleeper == 0.0:
             return (float(np.sqrt(self.foundation_stiffness / self.mass_per_length) / (2.0 * np.pi)),)
         middle = pad / rail + (pad + ballast) / self.sleeper_mass

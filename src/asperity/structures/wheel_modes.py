@@ -63,10 +63,12 @@ def matrices(mesh: Mesh, n: int, material: Material) -> tuple[Any, Any]:
     r = np.einsum("qa,ea->eq", _AT, corners[..., 0])[..., None]
     f = np.broadcast_to(values, fr.shape)
     strain = np.zeros((*fr.shape[:2], 6, 18))  # rr, θθ, zz, rz, rθ, θz
-    strain[:, :, 0, 0::3], strain[:, :, 2, 2::3] = fr, fz
+    strain[:, :, 0, 0::3] = fr
+    strain[:, :, 2, 2::3] = fz
     strain[:, :, 1, 0::3] = f / r
     strain[:, :, 1, 1::3] = n * f / r
-    strain[:, :, 3, 0::3], strain[:, :, 3, 2::3] = fz, fr
+    strain[:, :, 3, 0::3] = fz
+    strain[:, :, 3, 2::3] = fr
     strain[:, :, 4, 0::3] = -n * f / r
     strain[:, :, 4, 1::3] = fr - f / r
     strain[:, :, 5, 1::3] = fz
@@ -107,7 +109,8 @@ def natural_modes(mesh: Mesh, n: int, material: Material, highest: float, held: 
     if n == 0:
         fixed[:, 1] = True
     free = np.flatnonzero(~fixed.ravel())
-    stiffness, mass = stiffness[free][:, free], mass[free][:, free]
+    stiffness = stiffness[free][:, free]
+    mass = mass[free][:, free]
     start = np.random.default_rng(0).standard_normal(len(free))
     count = FIRST_MODES
     shift = -((2.0 * np.pi * SHIFT * highest) ** 2)
@@ -389,7 +392,8 @@ def _found(mesh: Mesh, radius: float, material: Material, highest: float) -> dic
 
     seat = mesh.nodes[:, 0] <= mesh.nodes[:, 0].min() + SEAT
     if seat.sum() < 3:  # an edge has three nodes
-        received, remedy = "one point nearest to the axis", "Let an edge have the smallest radius."
+        received = "one point nearest to the axis"
+        remedy = "Let an edge have the smallest radius."
         raise InputError("outline of the section", received, "a seat along the axis", remedy)
     tread, edges = _tread(mesh, radius)
     held = np.repeat(seat[:, None], 3, axis=1)
@@ -411,7 +415,8 @@ def _found(mesh: Mesh, radius: float, material: Material, highest: float) -> dic
 def _tread(mesh: Mesh, radius: float) -> tuple[Integers, Integers]:
     """Nodes of the tread by rising axial place, and its edges."""
     r, z = mesh.nodes.T
-    first, last = mesh.edges[:, 0], mesh.edges[:, 2]
+    first = mesh.edges[:, 0]
+    last = mesh.edges[:, 2]
     outer = (z[last] > z[first]) & (np.abs(r[mesh.edges] - radius) <= TREAD_DEPTH + ROUNDED).all(axis=1)
     start = int(np.argmin(np.hypot(r[first] - radius, z[first])))
     count = len(outer)

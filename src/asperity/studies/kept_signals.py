@@ -65,7 +65,8 @@ def responses_of_universal(path: str, array: str | None, source: str, spelling: 
     found = responses[names.index(chosen)]
     values = np.asarray(found["data"])
     told = int(found["num_pts"])
-    received, remedy = f"{count_of(told, 'sample')}, by its head, in {len(values)}", "Copy the file again."
+    received = f"{count_of(told, 'sample')}, by its head, in {len(values)}"
+    remedy = "Copy the file again."
     require(told == len(values), source, received, "as many as it holds", remedy)
     if found["abscissa_spacing"] == 1:
         return [[], 1.0 / float(found["abscissa_inc"])], [values]

@@ -190,13 +190,15 @@ class Fault:
         At places as in `heights`. The distance from an ellipse is right to the second order.
         """
         x, y = (abs(each) for each in np.broadcast_arrays(along, across))
-        a, b = 0.5 * self.length, 0.5 * self.width
+        a = 0.5 * self.length
+        b = 0.5 * self.width
         if self.shape == "pit":
             rho = np.maximum(np.hypot(x / a, y / b), 1e-9)
             slopes = np.hypot(x / a**2, y / b**2) / rho
             steepest = np.maximum(slopes, 1e-9 / max(a, b))
             return (rho - 1.0) / steepest, np.minimum(x / (a**2 * rho * steepest), 1.0)
-        out_x, out_y = x - a, y - b
+        out_x = x - a
+        out_y = y - b
         corner = np.hypot(np.maximum(out_x, 0.0), np.maximum(out_y, 0.0))
         beside = (out_x > 0.0) & (out_y > 0.0)
         normal = np.where(beside, out_x / np.where(beside, corner, 1.0), out_x >= out_y)
@@ -266,7 +268,8 @@ def _places(
     fault: Fault, shape: tuple[int, int], spacing: tuple[float, float]
 ) -> Iterator[tuple[NDArray[Any], Array, Array]]:
     """Rows about each of the faults alike, and their places along (rows, 1) and across (lines,), m."""
-    (rows, lines), (dx, dy) = shape, spacing
+    rows, lines = shape
+    dx, dy = spacing
     across = np.asarray((np.arange(lines) - lines // 2) * dy - fault.offset)
     margin = REACH * (dx + dy) if fault.shape in HOLLOWS else dx
     reach = math.ceil(0.5 * fault.size[0] / dx) + math.ceil(margin / dx)

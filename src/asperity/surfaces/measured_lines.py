@@ -77,7 +77,8 @@ def process(
         line = line.filled()
         if "spikes" in steps:
             line, spikes, points = remove_spikes(line)
-            removed, changed = removed + spikes, changed + points
+            removed = removed + spikes
+            changed = changed + points
         done.append(roll_over(line) if "curvature" in steps else line)
         share, most = _lift(done[-1].heights, line.heights)
         lifted.append(share)

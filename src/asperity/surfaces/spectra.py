@@ -47,7 +47,8 @@ def psd_2d(surface: HeightMap) -> tuple[Array, Array, Array]:
     squared Hann window.
     """
     qx, _, half = _half_plane(surface)
-    (nx, ny), (_, dy) = surface.shape, surface.spacing
+    nx, ny = surface.shape
+    _, dy = surface.spacing
     density = np.empty((nx, ny))
     density[:, : ny // 2 + 1] = half
     density[:, ny // 2 + 1 :] = half[-np.arange(nx) % nx, (ny - 1) // 2 : 0 : -1]  # the same at −q
@@ -59,8 +60,10 @@ def psd_2d(surface: HeightMap) -> tuple[Array, Array, Array]:
 def _half_plane(surface: HeightMap) -> tuple[Array, Array, Array]:
     """Spectrum of `psd_2d` where qy is not below zero, with qx in the order of transforms."""
     _require_complete(surface)
-    (nx, ny), (dx, dy) = surface.shape, surface.spacing
-    along, across = hann_window(nx), hann_window(ny)
+    nx, ny = surface.shape
+    dx, dy = surface.spacing
+    along = hann_window(nx)
+    across = hann_window(ny)
     mean = surface.heights.mean()
     lines = np.empty((nx, ny // 2 + 1), dtype=np.complex128)
     for rows in _pieces(surface.shape):
@@ -142,7 +145,8 @@ def autocorrelation(surface: HeightMap) -> Array:
     (autocorrelation function).
     """
     _require_complete(surface)
-    heights, (nx, ny) = surface.heights, surface.shape
+    heights = surface.heights
+    nx, ny = surface.shape
     require(np.ptp(heights), "surface", "equal heights everywhere", "a surface with roughness")
     found = lag_products(heights, nx // 2, float(heights.mean()))
     found /= lag_pairs(nx, ny, nx // 2)

@@ -177,7 +177,8 @@ def _amplitudes(powers: Array, total: float) -> dict[str, float]:
 def rms_slope(surface: HeightMap) -> float:
     """Rms slope Sdq of levelled heights, m; missing points are left out."""
     found = _steepness(_slope_sums(surface.heights, surface.spacing))["dq"]
-    received, allowed = "no seven valid points in a row along both axes", "enough valid points for slopes"
+    received = "no seven valid points in a row along both axes"
+    allowed = "enough valid points for slopes"
     require(math.isfinite(found), "surface", received, allowed, "Use fill first.")
     return found
 

@@ -193,7 +193,8 @@ class LongStrip:
 
     def _tile(self, which: int, tile: int) -> Array:
         """Heights of a range of waves in a tile on its own fine grid, m."""
-        lines, dy = self.shape[1], self.spacing[1]
+        lines = self.shape[1]
+        dy = self.spacing[1]
         name = self.drawn.name, which, tile, dy, lines
         waves = self.drawn.ranges[which]
         return tiles.rows(name, lambda: fine(waves.waves(tile, places_across(lines, dy))))

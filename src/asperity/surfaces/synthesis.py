@@ -325,7 +325,8 @@ def waves_of(tile: AffineTile) -> MembersOfRange:
     parts = []
     for first in range(0, count + 1, step):
         x = np.arange(first, min(first + step, count + 1))[:, None]
-        qx, qy = x / tile.size[0], y / tile.size[1]
+        qx = x / tile.size[0]
+        qy = y / tile.size[1]
         stretched = sum((qx * a + qy * b) ** 2 for a, b in drawn_out(tile.anisotropy, tile.lay).T)
         square = qx**2 + qy**2
         inside = (stretched >= 1.0) & (stretched < RANGE**2) & (square <= tile.highest**2)

@@ -213,7 +213,8 @@ def along_roller(tree: DataTree, lines: Lines) -> chart.Drawn:
 
 def _tilted(tree: DataTree) -> str:
     """How far the inner ring of rollers is tilted at rest, and what holds it; empty where it is not."""
-    tilt, moment = data.number(tree, bearing.RING_TILT), data.number(tree, bearing.TILT_MOMENT)
+    tilt = data.number(tree, bearing.RING_TILT)
+    moment = data.number(tree, bearing.TILT_MOMENT)
     if not tilt or moment is None:
         return ""
     return f" The inner ring is held at a tilt of {rounded(1e3 * tilt, 4)} mrad by {rounded(moment, 4)} N m."

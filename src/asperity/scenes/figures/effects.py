@@ -64,7 +64,8 @@ class Effects:
 
     def _as_much(self) -> str:
         """Variants that help no less than the best one but by chance; empty where it is alone."""
-        (effect, *others), (error, *of_others) = self.effect[:, 0], self.error[:, 0]
+        (effect, *others) = self.effect[:, 0]
+        (error, *of_others) = self.error[:, 0]
         told = [
             f"{name}, {data.signed(other)}"
             for name, other, own in zip(self.variants[1:], others, of_others, strict=True)

@@ -161,7 +161,8 @@ def measured_sound_table(tree: DataTree) -> ReportTable | None:
 
 def _over_pass_by(tree: DataTree) -> Iterator[figure.Series]:
     """Levels of the main law over the pass-by time, A-weighted, by what radiates; then those measured."""
-    own, level = schema.MEASURED_BAND_LEVEL, schema.SOUND_EXPOSURE_LEVEL
+    own = schema.MEASURED_BAND_LEVEL
+    level = schema.SOUND_EXPOSURE_LEVEL
     band = data.values(tree, schema.PASS_BY_BAND)
     measured = data.values(tree, own)
     front, rear = (float(data.stated(tree, end)) for end in (schema.FRONT_TIME, schema.REAR_TIME))

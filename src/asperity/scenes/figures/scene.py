@@ -98,7 +98,8 @@ def _radius(of: Lengths) -> float:
 
 def _side(tree: DataTree, of: Lengths) -> Panel:
     """All contacts where the record begins, on what is rolled over."""
-    begin, end = of["record begins at x"], of["record ends at x"]
+    begin = of["record begins at x"]
+    end = of["record ends at x"]
     contacts = [begin + offset for offset in _beginning(of, "contact") or [0.0]]
     looked_at = _beginning(of, "sensor") + _beginning(of, "point")
     spacing = of.get("track sleeper spacing")
@@ -164,7 +165,8 @@ def _patch(of: Lengths) -> list[Panel]:
     marks: list[Mark] = []
     if cell := of.get("cell"):
         name = data.engineering(cell, "m", 2)
-        left, bottom = (-wide / 2, -high / 2)
+        left = -wide / 2
+        bottom = -high / 2
         side = cell / size
         marks.append(_block(left, bottom, wide, high, fill=""))
         marks.append(_block(left, bottom, side, side, fill=INK, colour=""))

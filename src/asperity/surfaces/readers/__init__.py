@@ -228,7 +228,8 @@ def _by_content(file: Path, head: bytes) -> str | None:
         return extension
     if not head.startswith(b"PK"):
         return None
-    received, allowed = "a zip archive without its directory", "an intact archive"
+    received = "a zip archive without its directory"
+    allowed = "an intact archive"
     remedy = "The file is truncated; copy or export it again."
     require(zipfile.is_zipfile(file), file.name, received, allowed, remedy)
     with guards.hostile(file.name, "zip"), guards.archive(file) as opened:
@@ -264,7 +265,8 @@ def _finished(
         left = "left as NaN, which contact cannot be solved with"
         remedy = f"{spell('fill', True)} interpolates them"
         if fill:
-            left, remedy = "interpolated from their neighbours", "check the measurement"
+            left = "interpolated from their neighbours"
+            remedy = "check the measurement"
         if fill and ends:
             left = f"interpolated along the lines but for {ends} at their ends"
         verb = "has" if missing == 1 else "have"

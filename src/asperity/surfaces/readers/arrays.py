@@ -92,7 +92,8 @@ def surfaces_of_array(array: NDArray[Any], hints: Hints, source: str) -> list[gu
     """Surfaces that an array without units holds, of which the hints tell the rest, see `read_npy`."""
     for turned in (array, array.T) if array.ndim == 2 and array.dtype.kind in "fiu" else ():
         first, *others = turned[:MOST_TRIED].T
-        received, remedy = "even positions beside heights", "Save the heights alone, and give the pixel size."
+        received = "even positions beside heights"
+        remedy = "Save the heights alone, and give the pixel size."
         bare = not positions.are_even(first) or not others or all(map(positions.are_even, others))
         require(bare, source, received, "heights alone", remedy)
     heights = guards.scaled(guards.without_marks(array), hints.heights_in(source), source)
@@ -108,7 +109,8 @@ def array_in(data: bytes, file: str) -> NDArray[Any]:
     allowed = "version 1.0 or 2.0"
     require(version in readers, file, received, allowed, "Save it with numpy.save.")
     shape, fortran, kind = readers[version](stream)
-    allowed, remedy = "numbers; Python objects are never unpickled", "Save it as a float array."
+    allowed = "numbers; Python objects are never unpickled"
+    remedy = "Save it as a float array."
     numbers = not kind.hasobject and kind.itemsize > 0
     require(numbers, file, f"an array of type {kind}", allowed, remedy)
     points = guards.check_claim(file, shape, kind.itemsize, len(data) - stream.tell()) if shape else 1

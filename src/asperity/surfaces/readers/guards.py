@@ -135,7 +135,8 @@ def parse_xml(data: bytes, source: str) -> ElementTree.Element:
     utf16 = data[:2] in (b"\xff\xfe", b"\xfe\xff")
     text = data.decode("utf-16" if utf16 else "utf-8-sig")
     plain = "<!DOCTYPE" not in text.upper() and "<!ENTITY" not in text.upper()
-    received, allowed = "an XML document type or entity", "XML without document type and entities"
+    received = "an XML document type or entity"
+    allowed = "XML without document type and entities"
     require(plain, source, received, allowed, "Do not trust this file.")
     # decoded text: the parser sees exactly what was checked, whatever encoding the document claims
     return ElementTree.fromstring(text)  # noqa: S314

@@ -97,7 +97,8 @@ def _opener(path: Path) -> Any:
 
 def _surfaces(measured: Any, hints: Hints, source: str) -> list[guards.Surface]:
     unit = None if measured.unit is None else factor(measured.unit, "m")
-    received, allowed = "points at no uniform spacing", "a line, or a uniform map"
+    received = "points at no uniform spacing"
+    allowed = "a line, or a uniform map"
     line = np.ndim(measured.heights()) == 1
     require(measured.is_uniform or line, source, received, allowed, "Resample it at a uniform spacing first.")
     if not measured.is_uniform:  # to the library: it asks for equal steps, however they were printed
@@ -164,7 +165,8 @@ def _opened(path: Path) -> Iterator[Any]:
         with opened_netcdf(path, path.name, phony_dims="access") as opened:
             yield opened
         return
-    received, allowed = "netCDF of 64-bit data (CDF-5)", "netCDF-4, or classic netCDF (CDF-1, CDF-2)"
+    received = "netCDF of 64-bit data (CDF-5)"
+    allowed = "netCDF-4, or classic netCDF (CDF-1, CDF-2)"
     require(head != CLASSIC[2], path.name, received, allowed, "Convert it, as by nccopy -k nc4.")
     import xarray
 

@@ -66,7 +66,8 @@ def made_even(x: Array, z: Array, source: str) -> tuple[Array, float]:
         if error.received != UNEVEN:
             raise
     order = np.argsort(x, kind="stable")
-    place, height = x[order], z[order]
+    place = x[order]
+    height = z[order]
     gaps = np.diff(place)
     received = f"several heights at {rounded(place[int(np.argmin(gaps))])}"
     remedy = "Leave flanks out that overhang."
@@ -259,7 +260,8 @@ def _between(rising: Array, index: Index, half: Array) -> bool:
     steps = [(low[-1] - high[0]) / last, (high[-1] - low[0]) / last]
     for _ in range(BISECTIONS):
         step = 0.5 * sum(steps)
-        over, under = high - index * step, low - index * step
+        over = high - index * step
+        under = low - index * step
         above = int(np.argmin(over))
         below = int(np.argmax(under))
         if over[above] >= under[below]:
