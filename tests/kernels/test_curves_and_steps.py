@@ -9,11 +9,13 @@ from numpy.testing import assert_allclose
 from scipy.interpolate import CubicSpline, PchipInterpolator
 from scipy.linalg import expm
 
+from asperity import HalfSpace
 from asperity.kernels import stepping
 from asperity.kernels.curves import shape_preserving, splines_along
 from asperity.kernels.fourier import factors, roots, smooth_length, transform
+from asperity.kernels.influence import prepared
 from asperity.kernels.lanes import width
-from asperity.kernels.scanning import continue_pressure, correct_start, misfits
+from asperity.kernels.scanning import continue_pressure, correct_start, misfits, room
 from asperity.kernels.stepping import refine
 from asperity.rolling.steps import modal_coefficients
 
@@ -98,6 +100,16 @@ def test_transform_is_the_discrete_fourier_transform_of_every_column(n, dtype):
     expected = np.fft.fft(z, axis=0)
     error = np.abs(result[:, 0] + 1j * result[:, 1] - expected).max()
     assert error < PRECISIONS[dtype] * np.abs(expected).max()
+
+
+@pytest.mark.parametrize("shape", [(6, 6), (17, 33), (40, 25)])
+def test_vectors_of_a_convolution_lie_on_whole_lines_of_the_cache(shape):
+    known = HalfSpace(shape, 1e-5, 1e11).influence
+    for n in (8, 16, 24):
+        known = prepared(known, n, n)
+        assert known.spectra.ctypes.data % 64 == 0
+    rooms = [getattr(room(known, *shape), name) for name in ("outer", "inner") for _ in range(8)]
+    assert {each.ctypes.data % 64 for each in rooms} == {0}
 
 
 def test_lengths_are_the_smallest_that_transform_fast():

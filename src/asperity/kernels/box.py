@@ -52,7 +52,8 @@ def _extent(nx: int, ny: int, lanes: int) -> tuple[int, int]:
 def box_room(nx: int, ny: int, mx: int, my: int, lanes: int) -> int:
     """Room, in numbers, that a box of nx × ny cells needs of which mx × my are convolved."""
     pitch, size = _extent(nx, ny, lanes)
-    return 10 * size + 2 * (whole_vectors(pitch, lanes) + REACH * pitch) + workspace(mx, my, lanes)
+    frames = 2 * whole_vectors(pitch, lanes) + whole_vectors(2 * REACH * pitch, lanes)
+    return 10 * size + frames + workspace(mx, my, lanes)
 
 
 @compiled(**CALLED)
@@ -67,7 +68,7 @@ def empty_box(nx: int, ny: int, room: NDArray) -> Box:
         nx, ny, pitch, room[:size], room[size + frame : 2 * size + frame], room[size : 2 * (size + frame)],
         fields[:size], fields[size : 2 * size], fields[2 * size : 3 * size], fields[3 * size : 4 * size],
         fields[4 * size : 5 * size], fields[5 * size : 6 * size], fields[6 * size : masked],
-        fields[masked:end], fields[end:],
+        fields[masked:end], fields[whole_vectors(end, lanes(room)) :],
     )  # fmt: skip
     for q in range(size):
         box.overlap[q] = -FAR

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from asperity.kernels.fourier import factors, read_parts, roots, smooth_length, transform, write_parts
-from asperity.kernels.lanes import lanes, load, store, transpose, width
+from asperity.kernels.lanes import aligned, lanes, load, store, transpose, width
 from asperity.kernels.options import CALLED, INNER, compiled
 
 AT_ONCE = 2**16
@@ -290,8 +290,10 @@ def prepared(known: Influence, nx: int, ny: int) -> Influence:
     places = known.places.copy()
     places[mx // UNIT, my // UNIT] = len(known.spectra)
     dtype = known.spectra.dtype
-    added = spectrum(known.table, mx, my, width(dtype)).astype(dtype)
-    return known._replace(places=places, spectra=np.concatenate([known.spectra, added]))
+    added = spectrum(known.table, mx, my, width(dtype))
+    spectra = aligned(len(known.spectra) + len(added), dtype)
+    np.concatenate([known.spectra, added], out=spectra, casting="same_kind")
+    return known._replace(places=places, spectra=spectra)
 
 
 @compiled(**INNER)

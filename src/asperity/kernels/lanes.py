@@ -13,15 +13,23 @@ from llvmlite import ir
 from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic, lower_builtin, models, register_model, type_callable
-from numpy.typing import DTypeLike
+from numpy.typing import DTypeLike, NDArray
 
 VECTOR_BYTES = 64
-"""Size of a vector."""
+"""Size of a vector, and of a line of a processor's cache."""
 
 
 def width(dtype: DTypeLike) -> int:
     """Numbers in a vector, of type float64 or float32."""
     return VECTOR_BYTES // np.dtype(dtype).itemsize
+
+
+def aligned(count: int, dtype: DTypeLike) -> NDArray:
+    """Zeros that begin with a line of the cache: a vector that lies on two is read twice."""
+    size = count * np.dtype(dtype).itemsize
+    room = np.zeros(size + VECTOR_BYTES, np.uint8)
+    first = -room.ctypes.data % VECTOR_BYTES
+    return room[first : first + size].view(dtype)
 
 
 _compiled: Any = intrinsic  # makes a function of compiled code, whose first parameter is filled in

@@ -9,7 +9,7 @@ from asperity.kernels.at_load import carry
 from asperity.kernels.box import Box, box_room, cut, empty_box, overlap_box, paste
 from asperity.kernels.edges import SoftCells, find_edges, soft_cells
 from asperity.kernels.influence import UNIT, Influence, convolution, is_prepared
-from asperity.kernels.lanes import VECTOR_BYTES, lanes, width
+from asperity.kernels.lanes import VECTOR_BYTES, aligned, lanes, width
 from asperity.kernels.options import CALLED, INNER, LOOP, ONCE, REASSOCIATE, compiled
 from asperity.kernels.projected_cg import Task, solve, survey, true_residual
 from asperity.kernels.rims import (
@@ -89,7 +89,7 @@ def room(
     size = box_room(nx, ny, mx, my, width(dtype))
     covered = None if sides is None else rims(*sides, nx * ny, dtype)
     edges = soft_cells(soft, nx * ny, dtype)
-    return Room(np.empty(ny), np.empty(size, dtype), np.empty(size, dtype), covered, edges)
+    return Room(np.empty(ny), aligned(size, dtype), aligned(size, dtype), covered, edges)
 
 
 class Solution(NamedTuple):

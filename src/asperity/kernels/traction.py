@@ -12,7 +12,7 @@ from numpy.typing import DTypeLike, NDArray
 from asperity.kernels.box import REACH
 from asperity.kernels.fourier import factors, read_parts, roots, smooth_length, transform, write_parts
 from asperity.kernels.influence import _clear, _edge_log, whole_vectors
-from asperity.kernels.lanes import lanes, transpose, width
+from asperity.kernels.lanes import aligned, lanes, transpose, width
 from asperity.kernels.options import CALLED, INNER, LOOP, ONCE, REASSOCIATE, compiled
 
 
@@ -80,10 +80,10 @@ def traction_convolution(kernels: NDArray, nx: int, ny: int, dtype: DTypeLike) -
     padded[:, : 2 * nx - 1, : 2 * ny - 1] = kernels * np.exp(-1j * np.pi / mx * x)[:, None]
     found = np.fft.fft2(np.roll(padded, (1 - nx, 1 - ny), (1, 2)))[:, : blocks * n] / (2 * mx * my)
     vectors = np.stack([found.real, found.imag], axis=1).reshape(6, blocks, n, my).transpose(1, 3, 0, 2)
-    numbers = (roots(mx), roots(my), roots(2 * mx)[: 2 * mx], vectors.ravel())
-    return TractionConvolution(
-        np.array(factors(mx)), np.array(factors(my)), *(a.astype(dtype) for a in numbers)
-    )
+    spectra = aligned(vectors.size, dtype)
+    spectra[:] = vectors.ravel()
+    x, y, turn = (a.astype(dtype) for a in (roots(mx), roots(my), roots(2 * mx)[: 2 * mx]))
+    return TractionConvolution(np.array(factors(mx)), np.array(factors(my)), x, y, turn, spectra)
 
 
 @compiled(**INNER)
@@ -246,7 +246,7 @@ def _room(c: TractionConvolution) -> NDArray:
     mx = len(c.roots_x) // 2
     my = len(c.roots_y) // 2
     n = width(c.roots_x.dtype)
-    return np.zeros(4 * n * (-(-mx // (2 * n)) * my + max(mx, my)), c.roots_x.dtype)
+    return aligned(4 * n * (-(-mx // (2 * n)) * my + max(mx, my)), c.roots_x.dtype)
 
 
 class TractionTask(NamedTuple):
