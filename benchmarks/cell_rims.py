@@ -1,6 +1,6 @@
 """The gap that is left in cells at the rim of a contact, and their covered share: curves of `kernels.rims`.
 
-    python benchmarks/cell_rims.py            # the curves, as they stand in the kernel
+    python benchmarks/cell_rims.py            # the curves, as rims.toml beside the kernel has them
     python benchmarks/cell_rims.py --check    # against Hertz, 4 to 24 cells, balls and ellipses
     python benchmarks/cell_rims.py --rough    # rough balls against grids four times as fine
     python benchmarks/cell_rims.py --choice   # where covered cells serve better: `SMOOTH`
@@ -145,14 +145,14 @@ def print_curves():
         np.concatenate([cells_of_ball(*ball, kind) for ball in balls], axis=1) for kind in (False, True)
     )
     straight, gained = fitted(exact, exact[2], None, 0.0, (FINE,))
-    curves = {"LEFT": straight + FINE * every_knot(gained)}
+    curves = {"left": straight + FINE * every_knot(gained)}
     straight, gained = fitted(solved, solved[3], 0.0, 1.0, (0.0, FINE))
-    curves |= {"COVERED": np.clip(straight, 0.0, 1.0), "BENT": gained}
+    curves |= {"covered": np.clip(straight, 0.0, 1.0), "bent": gained}
     for name, found in curves.items():
         text = np.array2string(
             found.round(4) + 0.0, separator=", ", max_line_width=100, formatter={"float": "{:.4f}".format}
         )
-        print(f"{name} = np.array({text})")
+        print(f"{name} = {text}")
 
 
 def errors_of_ellipse(slender, across, offset, cells, count):

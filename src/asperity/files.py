@@ -9,6 +9,7 @@ import shutil
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, nullcontext, suppress
+from importlib import resources
 from pathlib import Path
 from typing import BinaryIO
 
@@ -26,6 +27,11 @@ _SEAL_SIZE = len(_SEAL) + 64
 _CHUNK = 2**20
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG) if hasattr(errno, "EDQUOT") else (errno.ENOSPC, errno.EFBIG)
 _swept: set[Path] = set()
+
+
+def packaged(name: str) -> str:
+    """Text of a file that comes with the program, by its path in the package."""
+    return resources.files("asperity").joinpath(name).read_text(encoding="utf-8")
 
 
 def atomic_write(

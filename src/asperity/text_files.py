@@ -8,14 +8,10 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from asperity.arguments import Array, no_file
 from asperity.errors import InputError, printable
 from asperity.files import amount, write_bytes
-
-if TYPE_CHECKING:
-    pass
 
 _MARKS = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 _NO_TEXT = {

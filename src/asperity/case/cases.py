@@ -2,7 +2,6 @@
 
 import importlib
 from collections.abc import Mapping, Sequence
-from importlib import resources
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +10,7 @@ from asperity.arguments import FilePath, file_path, nearest, require, shown
 from asperity.case import PRESETS, kinds, scene, toml
 from asperity.case.any_case import AnyCase, commented, in_toml
 from asperity.errors import CaseError, InputError
+from asperity.files import packaged
 from asperity.laws import family_of, law_keys, spec_of
 from asperity.parameters import FROM_PYTHON, Origin
 
@@ -214,5 +214,4 @@ def template(kind: str, laws: Sequence[str] = ()) -> str:
 
 def demo_case() -> AnyCase:
     """Return the case of ``asperity demo``: synthesised roughness, a few seconds of work."""
-    text = resources.files(__package__).joinpath("demo.toml").read_text(encoding="utf-8")
-    return parse_case(text, "demo.toml")
+    return parse_case(packaged("case/demo.toml"), "demo.toml")

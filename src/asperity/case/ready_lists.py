@@ -2,10 +2,10 @@
 
 from collections.abc import Callable, Mapping
 from functools import partial
-from importlib import resources
 from typing import Any
 
 from asperity.case import toml
+from asperity.files import packaged
 
 OVER_TRACKS, IN_BEARINGS = "what_helps.toml", "what_helps_in_bearings.toml"
 """Of what is heard beside a track, and of a ball bearing."""
@@ -17,7 +17,7 @@ NamedChanges = Mapping[str, Mapping[str, Any]]
 
 def ready_list(name: str = OVER_TRACKS) -> str:
     """A study of what helps, as a commented text."""
-    return resources.files(__package__).joinpath(name).read_text(encoding="utf-8")
+    return packaged(f"case/{name}")
 
 
 def listed_changes(name: str) -> NamedChanges:

@@ -235,7 +235,9 @@ def compiled(**options: Any) -> Callable[[Callable[..., Any]], Any]:
 
 
 _parts = [f"{version('numba')} {version('llvmlite')} {sys.version}".encode()]
-_parts += [source.read_bytes() for source in sorted(Path(__file__).parent.glob("*.py"))]
+_parts += [
+    each.read_bytes() for end in ("py", "toml") for each in sorted(Path(__file__).parent.glob(f"*.{end}"))
+]
 SOURCES = hashlib.sha256(b"".join(_parts)).hexdigest()[:16]
 """Folder of these kernels: named by what they are made of, as one is compiled into another."""
 

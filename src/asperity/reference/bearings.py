@@ -6,12 +6,12 @@ import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from decimal import Decimal
-from importlib.resources import files
 from itertools import groupby
 from typing import Any
 
 from asperity.arguments import shown
 from asperity.errors import InputError
+from asperity.files import packaged
 
 NEAR = 3
 """Names that are told where one is not known, at most."""
@@ -119,9 +119,8 @@ def _pitch_diameter(row: Mapping[str, Any]) -> float:
 
 def _read() -> dict[str, ListedBearing]:
     """All bearings of the file, by name."""
-    text = files(__package__).joinpath("bearings.toml").read_text(encoding="utf-8")
     found: dict[str, ListedBearing] = {}
-    for source in tomllib.loads(text, parse_float=Decimal)["source"]:
+    for source in tomllib.loads(packaged("reference/bearings.toml"), parse_float=Decimal)["source"]:
         angle = source.get("contact_angle")
         for row in source["bearings"]:
             found[row["name"]] = ListedBearing(

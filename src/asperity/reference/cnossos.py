@@ -9,18 +9,18 @@ import math
 import re
 import tomllib
 from collections.abc import Mapping, Sequence
-from importlib.resources import files
 
 import numpy as np
 
 from asperity.arguments import Array, ArrayLike
+from asperity.files import packaged
 
 CITATION = "Directive (EU) 2015/996, appendix G, as amended by Delegated Directive (EU) 2021/1226"
 
 Spectrum = tuple[Array, Array]
 Tables = Mapping[str, Sequence[float]]
 
-_TABLES = tomllib.loads(files(__package__).joinpath("cnossos.toml").read_text(encoding="utf-8"))
+_TABLES = tomllib.loads(packaged("reference/cnossos.toml"))
 WHEEL_ROUGHNESS: Tables = _TABLES["wheel_roughness"]
 """Table G-1a, wheel, dB re 1 µm at the nominal wavelengths from 1 m to 0.8 mm, by brake."""
 WHEEL_TRANSFER: Tables = _TABLES["wheel_transfer"]

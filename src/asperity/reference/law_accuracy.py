@@ -9,8 +9,9 @@ import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
 from typing import Any
+
+from asperity.files import packaged
 
 LOW, HIGH = 100.0, 5000.0
 """Centres of the lowest and highest one-third octave in which laws were compared, Hz."""
@@ -62,8 +63,7 @@ class LawMap:
 @cache
 def law_map() -> LawMap:
     """Read the map that comes with the program."""
-    text = files(__package__).joinpath("law_accuracy.json").read_text(encoding="utf-8")
-    return law_map_of(json.loads(text))
+    return law_map_of(json.loads(packaged("reference/law_accuracy.json")))
 
 
 def law_map_of(data: Mapping[str, Any]) -> LawMap:

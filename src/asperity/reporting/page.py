@@ -4,7 +4,6 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, Template
@@ -13,6 +12,7 @@ from xarray import DataTree
 
 from asperity import __version__
 from asperity.errors import printable
+from asperity.files import packaged
 from asperity.reporting import data, headline, payload
 from asperity.reporting.chart import Line, colour_variables
 from asperity.reporting.figure import Chapter, Figure, PageFigure
@@ -173,7 +173,7 @@ def page(
     differing += [f"and {len(changed) - CHANGES} more"] if len(changed) > CHANGES else []
     verdict = str(data.stated(tree, provenance.VERDICT) or "")
     seed = data.stated(tree, provenance.SEED)
-    button = (files("asperity.reporting") / "summary.js").read_text(encoding="utf-8")
+    button = packaged("reporting/summary.js")
     blocks = [block for section in shown for block in section.blocks]
     return whole_page(
         "report.html.jinja",

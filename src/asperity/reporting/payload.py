@@ -7,12 +7,12 @@ import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, is_dataclass, replace
 from functools import cache
-from importlib.resources import files
 from typing import Any
 
 import numpy as np
 
 from asperity.arguments import Array
+from asperity.files import packaged
 from asperity.reporting import chart
 from asperity.reporting.chart import Axis, Chart, Field, Line, Mark, Panel, envelope
 
@@ -177,19 +177,16 @@ def _axis(panel: Panel, mark: Mark, name: str) -> Axis:
 @cache
 def chart_script() -> str:
     """The script of a page: the library that draws axes, with its licence, and what draws charts with it."""
-    package = files("asperity.reporting")
-    library = (package / "uplot" / "uPlot.iife.min.js").read_text(encoding="utf-8").partition("\n")[2]
-    licence = (package / "uplot" / "LICENSE").read_text(encoding="utf-8")
-    own = ((package / "charts" / f"{name}.js").read_text(encoding="utf-8") for name in SCRIPTS)
+    library = packaged("reporting/uplot/uPlot.iife.min.js").partition("\n")[2]
+    licence = packaged("reporting/uplot/LICENSE")
+    own = (packaged(f"reporting/charts/{name}.js") for name in SCRIPTS)
     return f'/*! uPlot 1.6.32\n{licence}\n*/\n{library}\n(() => {{\n"use strict";\n{"".join(own)}}})();\n'
 
 
 @cache
 def chart_style() -> str:
     """Styles of charts, and those that the library needs."""
-    package = files("asperity.reporting")
-    library = (package / "uplot" / "uPlot.min.css").read_text(encoding="utf-8")
-    return f"{library}\n{(package / 'charts' / 'charts.css').read_text(encoding='utf-8')}"
+    return f"{packaged('reporting/uplot/uPlot.min.css')}\n{packaged('reporting/charts/charts.css')}"
 
 
 def digest_of(script: str) -> str:
