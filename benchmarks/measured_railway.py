@@ -261,11 +261,19 @@ TRIED = {
         {"pad_stiffens": False, "pad_damping": 0.0},
     ),
     "sleepers 0.57 to 0.63 m apart": ({"sleeper_spacing": (0.57, 0.63, 0.6)}, (), {}),
-    "a foot that flaps at 5.4 kHz": ({}, (), {"foot_frequency": 5400.0}),
+    "a foot that flaps at 5.4 kHz, by hand": ({}, (), {"foot": railway_supports.BY_HAND}),
+    "a foot that flaps, by finite elements": ({}, (), {"foot": railway_supports.BY_ELEMENTS}),
+    "that, and ballast of 100 kg on subgrade": (
+        BED,
+        (),
+        {"ballast_mass": 100.0, "foot": railway_supports.BY_ELEMENTS},
+    ),
 }
 """What is tried on top of the nearest: keys that are free beside its own, those that go, what is given."""
-PAID = tuple(TRIED)[1]
-"""The one of these with which what bays that differ do is computed, too."""
+BY_ITSELF, PAID, FOOT, BOTH = (tuple(TRIED)[number] for number in (0, 1, 7, 8))
+"""Those of these with which what bays that differ do is computed, too."""
+MOST = 1.2
+"""dB rms, asked of the better sections."""
 LOSSES = "pad_loss_factor", "rail_loss_factor", "sleeper_loss_factor"
 WIDER = {name: (0.1 * low, 10.0 * high, first) for name, (low, high, first) in (FREE | BENDS).items()}
 HELD = {"pad_loss_factor": 0.2, "rail_loss_factor": 0.006, "sleeper_loss_factor": 0.03}
@@ -394,7 +402,7 @@ def tracks_of(keys, kind="rigid", **more):
     ]
 
 
-ASIDE = "foot_frequency", "strength", "frequency"
+ASIDE = "foot", "strength", "frequency"
 """What `railway_supports.with_more` gives a track."""
 
 
@@ -729,6 +737,16 @@ class Found:
     railway: Railway
 
     @cached_property
+    def candidates_of_rates(self):
+        """Tables of what is left of decay rates, of keys of the nearest kind, and these by section."""
+        return decay_candidates(self.railway)
+
+    @cached_property
+    def tried(self):
+        """What more of physics leaves."""
+        return TriedOnNearest(self.railway, self.candidates_of_rates[-1])
+
+    @cached_property
     def track(self):
         """Of the reference in 2015, by its vertical decay rates."""
         aim = level(self.railway.rates(REFERENCE, "vertical", "2015")).mean(axis=0)
@@ -876,9 +894,9 @@ def fit_candidate(railway, section, free, fixed, kind=KINDS[0]):
 
 
 def decay_candidates(railway):
-    """What is left of the rates of each section by candidate; if the nearest is near enough; its keys.
+    """What is left of the rates of each section by candidate, keys of the nearest, and these by section.
 
-    And of the nearest, by section, its keys, and what is left of each band (18,), dB.
+    The last with what is left of each band (18,), dB.
     """
     rows, offs = [], {}
     for name, candidate in CANDIDATES.items():
@@ -886,12 +904,8 @@ def decay_candidates(railway):
         offs = dict(zip(SECTIONS, found, strict=True))
         said = [f"{rms(off):.2f} ({rms(off[:-1]):.2f})" for _, off in found]
         rows.append([name, *said, f"{np.mean([rms(off) for _, off in found]):.2f}"])
-    asked, keys_of = [], []
-    for section, (keys, off) in offs.items():
-        both, left = level(railway.rates(section, "vertical", "2012", "none")), rms(off)
-        scatter = rms(both[0] - both[1])
-        met = ["yes" if left <= most else "no" for most in (scatter, 1.2)]
-        asked.append([section, f"{left:.2f}", f"{scatter:.2f}", *met])
+    keys_of = []
+    for section, (keys, _) in offs.items():
         row = [f"{1e-6 * keys[name]:.0f}" for name in ("pad_stiffness", "ballast_stiffness")]
         row += [f"{1e-3 * keys['ballast_damping']:.0f}"]
         row += [f"{keys[f'{part}_loss_factor']:.2g}" for part in ("pad", "rail", "sleeper")]
@@ -904,38 +918,47 @@ def decay_candidates(railway):
                 f"{keys['slope']:.2f}",
             ]
         )
-    better = ["", "left of the fit, rms dB", "left − right, rms dB", "at most that", "at most 1.2 dB"]
     head = ["", "pad / (MN/m)", "ballast / (MN/m)", "/ (kN s/m)", "loss of pad", "of rail", "of sleeper"]
     head += ["modal masses", "off / mm", "slope"]
-    return table(["", *SECTIONS, "mean"], rows), table(better, asked), table(head, keys_of), offs
+    return table(["", *SECTIONS, "mean"], rows), table(head, keys_of), offs
 
 
-def bays_that_differ(railway, nearest, more=(), given=()):
-    """What bays that differ do to rates of the nearest kind of track, by section: no key is free for it.
+def bays_that_differ(railway, name, fits):
+    """What bays that differ do to rates of a kind of track that was tried: no key is free for it.
 
-    By section what both rails differ by, what is left with bays alike and with bays that differ, and by how
-    much a place is off their mean, rms dB of 100 Hz to 4 kHz.
+    By section what is left of bands with bays alike and with bays that differ, and by how much a place is off
+    their mean, dB (18,) each.
     """
     sideways_of, found = partial(webbed_sideways, railway), {}
     free, fixed, kind = CANDIDATES[NEAREST]
-    free, fixed = free | dict(more), fixed | dict(given)
-    for section, (keys, off) in nearest.items():
-        both = level(railway.rates(section, "vertical", "2012", "none"))
+    more, _, given = TRIED[name]
+    free, fixed = free | ASKEW | more, fixed | given
+    for section, (keys, off) in fits.items():
         places = hammered_in_bays(keys | fixed, sideways_of(section), kind)
         factor = energy(places.mean(axis=0))
 
         def computed(each, section=section, factor=factor):
             return factor * hammered_askew(each | fixed, sideways_of(section), kind)
 
-        _, in_bays = nearer(computed, free | ASKEW, keys, both.mean(axis=0))
-        told = both[0] - both[1], off, in_bays, places.std(axis=0)
-        found[section] = [rms(each[:-1]) for each in told]
+        aim = level(railway.rates(section, "vertical", "2012", "none")).mean(axis=0)
+        _, in_bays = nearer(computed, free, keys, aim)
+        found[section] = off, in_bays, places.std(axis=0)
     return found
 
 
-def bays_table(found):
-    """The same as a table."""
-    rows = [[section, *(f"{each:.2f}" for each in own)] for section, own in found.items()]
+def between_rails(railway):
+    """By section what left and right rail differ by in each band (18,), dB."""
+    each = {name: level(railway.rates(name, "vertical", "2012", "none")) for name in SECTIONS}
+    return {name: left - right for name, (left, right) in each.items()}
+
+
+def bays_table(railway, found):
+    """The same as a table, of 100 Hz to 4 kHz."""
+    apart = between_rails(railway)
+    rows = [
+        [section, *(f"{rms(each[:-1]):.2f}" for each in (apart[section], *own))]
+        for section, own in found.items()
+    ]
     head = ["100 Hz to 4 kHz, rms dB", "left − right", "left of the nearest, bays alike", "bays differ"]
     return table([*head, "bays differ: one place of the hammer less the mean"], rows)
 
@@ -960,38 +983,108 @@ def fit_on_nearest(railway, section, nearest, more, gone=(), given=(), bands=Non
     )
 
 
-def tried_on_nearest(railway, nearest):
-    """What more of physics leaves of rates on top of the nearest, and bays that differ of one of these."""
-    rows, paid = [], {}
-    for name, (more, gone, given) in TRIED.items():
-        found = {
-            section: fit_on_nearest(railway, section, nearest[section][0], more, gone, given)
-            for section in SECTIONS
+@dataclass(frozen=True, eq=False)
+class TriedOnNearest:
+    """What more of physics leaves of rates on top of the nearest kind of track, by what is tried."""
+
+    railway: Railway
+    nearest: dict
+
+    @cached_property
+    def fits(self):
+        """Keys and what is left of bands (18,), dB, by what is tried and section."""
+        return {
+            name: {
+                section: fit_on_nearest(self.railway, section, self.nearest[section][0], *each)
+                for section in SECTIONS
+            }
+            for name, each in TRIED.items()
         }
-        if name == PAID:
-            paid = found
-        said = [f"{rms(off):.2f} ({rms(off[:-1]):.2f})" for _, off in found.values()]
-        keys = f"{len(more) - len(gone):+d}" if more or gone else "0"
-        rows.append([name, keys, *said, f"{np.mean([rms(off[:-1]) for _, off in found.values()]):.2f}"])
-    more, _, given = TRIED[PAID]
-    bays = [each[2] for each in bays_that_differ(railway, paid, more, given).values()]
-    words = [f"({each:.2f})" for each in bays]
-    rows.append([f"{PAID}, bays that differ", "+1", *words, f"{np.mean(bays):.2f}"])
-    scatter = [level(railway.rates(each, "vertical", "2012", "none")) for each in SECTIONS]
-    both = [f"{rms(each[0] - each[1]):.2f} ({rms((each[0] - each[1])[:-1]):.2f})" for each in scatter]
-    rows.append(["left − right", "", *both, ""])
-    stiff = ", ".join(f"{1e-6 * keys['subgrade_stiffness']:.0f}" for keys, _ in paid.values())
-    return table(["rms dB", "keys more", *SECTIONS, "mean without 5 kHz"], rows), stiff
+
+    @cached_property
+    def in_bays(self):
+        """What bays that differ do to some of these."""
+        some = (BY_ITSELF, PAID, FOOT, BOTH)
+        return {name: bays_that_differ(self.railway, name, self.fits[name]) for name in some}
+
+    @cached_property
+    def left(self):
+        """What is left of bands (18,), dB, by what is tried and section, bays that differ among it."""
+        alike = {
+            name: {section: off for section, (_, off) in each.items()} for name, each in self.fits.items()
+        }
+        differ = {
+            f"{name}, bays that differ": {section: off for section, (_, off, _) in each.items()}
+            for name, each in self.in_bays.items()
+        }
+        return alike | differ
+
+    def keys(self, name):
+        """How many keys more are free, in words."""
+        more, gone, _ = TRIED[name.removesuffix(", bays that differ")]
+        return f"{len(more) - len(gone):+d}" if more or gone else "0"
+
+    def table(self):
+        """All that is left."""
+        apart = between_rails(self.railway)
+        rows = [
+            [
+                name,
+                self.keys(name) if name in self.left else "",
+                *(f"{rms(off):.2f} ({rms(off[:-1]):.2f})" for off in each.values()),
+                f"{np.mean([rms(off[:-1]) for off in each.values()]):.2f}",
+            ]
+            for name, each in (self.left | {"left − right": apart}).items()
+        ]
+        return table(["rms dB", "keys more", *SECTIONS, "mean without 5 kHz"], rows)
+
+    def verdicts(self):
+        """Which sections are met by which kind: at most what rails differ by, and at most 1.2 dB."""
+        apart, rows = between_rails(self.railway), []
+        names = [name for name in self.left if name.removesuffix(", bays that differ") in self.in_bays]
+        for name in sorted(names, key=lambda each: (FOOT in each or BOTH in each, "differ" in each)):
+            row = [name, self.keys(name)]
+            for most in (lambda section, bands: rms(apart[section][bands]), lambda *_: MOST):
+                for bands in (slice(None), slice(-1)):
+                    met = [
+                        section
+                        for section, off in self.left[name].items()
+                        if rms(off[bands]) <= most(section, bands)
+                    ]
+                    row.append("all" if len(met) == len(SECTIONS) else " ".join(met))
+            rows.append(row)
+        head = ["sections that are met by", "keys more", "rails differ by more, 18 bands", "without 5 kHz"]
+        return table([*head, "at most 1.2 dB, 18 bands", "without 5 kHz"], rows)
+
+    def subgrades(self):
+        """Of ballast of 100 kg, MN/m, in words."""
+        return ", ".join(f"{1e-6 * keys['subgrade_stiffness']:.0f}" for keys, _ in self.fits[PAID].values())
 
 
-def losses_on_limits(railway, nearest):
-    """Losses of the nearest that lie on a limit, what they would be without limits, and what it matters."""
+def highest_band(found):
+    """The band of 5 kHz, dB/m, in sections without dampers by date, both rails, and what is computed."""
     rows = []
-    for section, (keys, off) in nearest.items():
+    for section in SECTIONS:
+        row = [section]
+        for year in ("2012", "2013-01", "2013-07", "2015"):
+            rates = found.railway.rates(section, "vertical", year, "none")
+            row.append(" / ".join(f"{each:.1f}" for each in rates[:, -1]) if rates.size else "")
+        aim = level(found.railway.rates(section, "vertical", "2012", "none"))[:, -1].mean()
+        row += [f"{energy(aim + found.tried.left[name][section][-1]):.1f}" for name in (BY_ITSELF, FOOT)]
+        rows.append(row)
+    head = ["5 kHz, dB/m, left / right", "September 2012", "January 2013", "July 2013", "2015"]
+    return table([*head, "the nearest", FOOT], rows)
+
+
+def losses_on_limits(railway, fits, given=()):
+    """Losses of a kind of track that lie on a limit, without limits, and what these matter."""
+    rows, given = [], dict(given)
+    for section, (keys, off) in fits.items():
         limits = FREE | BENDS
-        freely, left = fit_on_nearest(railway, section, keys, {name: WIDER[name] for name in LOSSES})
-        low, _ = fit_on_nearest(railway, section, keys, {}, bands=-1)
-        _, held = fit_on_nearest(railway, section, keys, {}, gone=LOSSES, given=HELD)
+        fit = partial(fit_on_nearest, railway, section, keys)
+        freely, left = fit({name: WIDER[name] for name in LOSSES}, given=given)
+        low, _ = fit({}, given=given, bands=-1)
+        _, held = fit({}, gone=LOSSES, given=given | HELD)
         said = []
         for name in LOSSES:
             told = [f"{keys[name]:.2g}{on_limit(keys[name], limits[name])}", f"{freely[name]:.2g}"]
@@ -1691,8 +1784,7 @@ def page(found, folder):
     """Text of the page; its figures go into a folder."""
     (blind, after), none = strail_in_numbers(found)
     fits, rates = decay_fits(found)
-    candidates_of_rates, better, nearest, of_nearest = decay_candidates(found.railway)
-    tried, subgrades = tried_on_nearest(found.railway, of_nearest)
+    tried, of_nearest = found.tried, found.candidates_of_rates[-1]
     assumed, offs = candidates(found)
     checked, faster = by_hand(found)
     wide, share_known = widths(found)
@@ -1719,13 +1811,16 @@ def page(found, folder):
             regional_anew=table(*split(found.stated["regional anew"])),
             strail=strail(found),
             fits=fits,
-            better=better,
-            candidates_of_rates=candidates_of_rates,
-            nearest=nearest,
-            bays=bays_table(bays_that_differ(found.railway, of_nearest)),
-            tried=tried,
-            subgrades=subgrades,
+            candidates_of_rates=found.candidates_of_rates[0],
+            nearest=found.candidates_of_rates[1],
+            bays=bays_table(found.railway, tried.in_bays[BY_ITSELF]),
+            tried=tried.table(),
+            verdicts=tried.verdicts(),
+            highest=highest_band(found),
+            worst=tried.left[FOOT][REFERENCE][-1],
+            subgrades=tried.subgrades(),
             losses=losses_on_limits(found.railway, of_nearest),
+            losses_of_foot=losses_on_limits(found.railway, tried.fits[FOOT], TRIED[FOOT][2]),
             lateral=lateral_at(found),
             web=web_at(found),
             web_sections=web_sections(found),

@@ -18,6 +18,7 @@ import bearing_fit_intervals
 import measured_bearings as bearings
 import measured_railway as railway
 import railway_by_hand
+import railway_foot
 import railway_supports
 from compare_runs import compare, main
 from guard import CASES, ratios, rolled_in_turn, timed
@@ -229,16 +230,30 @@ def test_a_foot_that_flaps_is_heavy_below_its_resonance_and_light_above():
     track = railway.tracks_of({"pad_stiffness": 9e8})[0]
     omega = 2.0 * np.pi * np.array([1.0 + 0j, 3e3, 5e4])
     plain, flapping = (
-        each.rail.waves(omega)[0][0] for each in (track, railway_supports.with_more(track, 5e3))
+        each.rail.waves(omega)[0][0] for each in (track, railway_supports.with_more(track, (5e3, 10.0)))
     )
     assert flapping[0] == pytest.approx(plain[0], rel=1e-6)
     assert flapping[1].real > 1.01 * plain[1].real
     assert flapping[2].real < plain[2].real
-    mass = track.mass_per_length + railway_supports.FOOT * 0.36 / 0.64
+    mass = track.mass_per_length + 10.0 * 0.36 / 0.64
     heavier = replace(track, mass_per_length=mass).rail.waves(omega)[0][0]
     assert flapping[1] == pytest.approx(heavier[1], rel=2e-3)
-    still = railway_supports.with_more(track, np.inf).receptance([500.0], 0.3, 0.3)
+    still = railway_supports.with_more(track, (np.inf, 10.0)).receptance([500.0], 0.3, 0.3)
     assert still == pytest.approx(track.receptance([500.0], 0.3, 0.3), rel=1e-12)
+
+
+def test_a_foot_by_finite_elements_is_that_of_the_printed_section():
+    """Its area is made so; centroid and second moments are told by the section alone, waves by these."""
+    told = railway_foot.printed_units(railway_foot.section_of(railway_foot.flare()))
+    assert told == pytest.approx(list(railway_foot.PRINTED.values()), rel=0.012)
+    bent = railway_foot.lowest_waves()
+    slow = railway_foot.wavenumber(bent[0, 0]) / railway_foot.WAVENUMBERS[0]  # a beam, where waves are long
+    assert slow == pytest.approx(1.0, abs=2e-3)
+    along = np.sqrt(210e9 / 7850.0) * railway_foot.WAVENUMBERS[0] / (2.0 * np.pi)
+    assert bent[0, 1] == pytest.approx(along, rel=5e-3)  # a bar that is pulled along
+    assert railway_foot.foot_on_spring() == pytest.approx(railway_supports.BY_ELEMENTS, rel=1e-3)
+    flaps = railway_foot.wavenumber(bent[:, 0], *railway_supports.BY_ELEMENTS)
+    assert flaps / railway_foot.WAVENUMBERS == pytest.approx(1.0, abs=0.022)
 
 
 def test_the_strongest_relaxation_of_a_pad_loses_what_is_printed_at_most():
