@@ -1,6 +1,7 @@
 """Measured records of bearings: the part that is struck is named, at its speed, and of sound ones none."""
 
 import re
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -19,8 +20,13 @@ measured = pytest.mark.skipif(
 )
 
 
+@cache
 def records():
     """File, name, signal, rate, speed and part of every record."""
+    return tuple(_read())
+
+
+def _read():
     for file, rate in FILES.items():
         with np.load(DATA / file) as data:
             for name in data.files:

@@ -220,16 +220,23 @@ class BearingUnderLoad(AnyCase):
         return f"{element} bearing{name} at {span_of(self.speed, 60.0)} 1/min"
 
     @cached_property
+    def _at_rest(self) -> tuple[LoadedBearing, list[Warning | str]]:
+        speed = self.speed if self.centrifugal else 0.0
+        with PhysicsWarning.caught() as caught:
+            found = self.bearing.bearing.loaded(self.radial, self.axial, speed=speed, **self.held)
+        return found, [each.message for each in caught]
+
+    @property
     def static(self) -> LoadedBearing:
         """The bearing under its load while it turns, at angles of the cage over the passing of a ball."""
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", PhysicsWarning)  # told when it is prepared
-            return self.loaded()
+        return self._at_rest[0]  # what is doubtful of it is told when it is prepared
 
     def loaded(self) -> LoadedBearing:
         """The same with its warnings."""
-        speed = self.speed if self.centrifugal else 0.0
-        return self.bearing.bearing.loaded(self.radial, self.axial, speed=speed, **self.held)
+        found, doubts = self._at_rest
+        for each in doubts:
+            warnings.warn(each, stacklevel=2)
+        return found
 
     @property
     def tilts(self) -> dict[str, float]:

@@ -339,5 +339,5 @@ def deepest_comb(combs: Iterable[tuple[float, float]]) -> float:
 
 def _less_largest(terms: Array) -> Array:
     """Sums (n,) of values (n, k) without the largest of each row; what is not known counts nothing."""
-    known: Array = np.sort(np.nan_to_num(terms, nan=0.0), axis=-1)
+    known: Array = np.sort(np.where(np.isnan(terms), 0.0, terms), axis=-1)
     return known[:, :-1].sum(axis=-1)

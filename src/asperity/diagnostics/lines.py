@@ -24,6 +24,13 @@ FAINT = 0.1
 """Share of the clearest family below which another one is not told apart from what modulates it."""
 
 
+def median(values: Array) -> float:
+    """Median of numbers (n,), none of them NaN: of few, NumPy's takes ten times as long."""
+    half = values.size // 2
+    parted = np.partition(values, half)
+    return float(parted[half] if values.size % 2 else 0.5 * (parted[:half].max() + parted[half]))
+
+
 @dataclass(frozen=True, eq=False)
 class LineFamily:
     """A fundamental and its harmonics, sought in a spectrum with one deviation in common.
@@ -103,7 +110,7 @@ def find_lines(
     require(expected >= 8.0 * step, "line that is sought", received, allowed, "Record longer.")
     order = np.arange(1, count + 1)
     spans = [(at, max(AROUND * at, FEWEST)) for at in order * expected / step]
-    background = np.array([np.median(amplitude[max(int(at - n), 1) : int(at + n)]) for at, n in spans])
+    background = np.array([median(amplitude[max(int(at - n), 1) : int(at + n)]) for at, n in spans])
     highest = maximum_filter1d(amplitude, 2 * WITHIN + 1)
     shifts = np.linspace(-slip, slip, 2 * int(np.ceil(slip * count * expected / step)) + 1)
     places = np.rint((1.0 + shifts[:, None]) * order * expected / step).astype(int)
@@ -176,5 +183,5 @@ def _without(frequency: Array, amplitude: Array, lines: LineFamily) -> Array:
     places = np.unique(places + width)
     places = places[(places > 0) & (places < amplitude.size)]
     left = amplitude.copy()
-    left[places] = np.minimum(left[places], np.median(amplitude))
+    left[places] = np.minimum(left[places], median(amplitude))
     return left

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from asperity.arguments import Array
 from asperity.diagnostics.envelopes import Spectrum, mean_spectrum
-from asperity.diagnostics.lines import AROUND, COUNTED, FEWEST, STANDS_OUT, WITHIN
+from asperity.diagnostics.lines import AROUND, COUNTED, FEWEST, STANDS_OUT, WITHIN, median
 
 HARMONICS = 5
 """Of a comb: what a resonance leaves of them differs, what most of them have counts."""
@@ -82,7 +82,7 @@ class Prominence:
             half = max(AROUND * centre, FEWEST)
             first = max(int(centre - half), LOWEST_PLACE - 1)
             last = int(centre + half)
-            medians.append(np.median(amplitude[min(first, amplitude.size - 1) : last]))
+            medians.append(median(amplitude[min(first, amplitude.size - 1) : last]))
         background = np.interp(np.arange(amplitude.size), centres, medians)
         ratio = amplitude / np.maximum(background, 1e-300)
         ratio[: LOWEST_PLACE - 1] = 0.0
@@ -123,7 +123,7 @@ class Prominence:
     def standardised(self, frequency: Array, highest: float) -> Array:
         """What `at` finds, by the median and deviation of all places up to a highest one."""
         around = self.log_ratio[LOWEST_PLACE : max(int(highest / self.step), LOWEST_PLACE + 8)]
-        return (self.at(frequency) - np.median(around)) / max(float(around.std()), 1e-3)
+        return (self.at(frequency) - median(around)) / max(float(around.std()), 1e-3)
 
     def combs(self, fundamental: Array, least: float = STANDS_OUT) -> Array:
         """How clearly there is a comb of each fundamental (g,), Hz: 0, or the mean logarithm over harmonics.

@@ -27,6 +27,8 @@ def doubt_surface(surface: Raceway, approach: float, rolls: str) -> None:
     InputError
         Above a hundred approaches, or an rms slope of one.
     """
+    if not (surface.line.any() or surface.heights.any()):
+        return
     turns = np.fft.rfft(surface.line)
     turns[:2] = 0.0
     waves = surface.heights + np.fft.irfft(turns, len(surface.line))[:, None]
