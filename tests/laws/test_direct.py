@@ -11,7 +11,7 @@ from asperity.laws.layout import force
 from asperity.reduction.filter import filtered_texture
 from asperity.reduction.stiffness import ForceCurve, ForceTable
 from asperity.reduction.texture import areal_texture
-from asperity.rolling.rest import STEPPED_TOLERANCE, at_rest
+from asperity.rolling.rest import STEPPED_TOLERANCE, at_rest, evaluated
 from asperity.structures.body import Body
 from asperity.surfaces.strip import Rows
 from refusals import refusals
@@ -41,8 +41,8 @@ def test_it_is_the_half_space_under_the_position():
 def test_at_rest_it_carries_the_load_at_any_tolerance():
     """The contact from which rolling starts, against one that is solved under the load."""
     law = direct(rtol=0.01).prepare([20 * DX, 21 * DX])
-    one, at = [Body.rigid(1.0, LOAD)], [lambda approach: law.evaluate(0, approach)]
-    _, _, approach, _ = at_rest(one, np.zeros(1), np.zeros((1, 1)), at, np.array([LOAD]), STEPPED_TOLERANCE)
+    one, laws = [Body.rigid(1.0, LOAD)], evaluated([law], np.zeros(1))
+    _, _, approach, _ = at_rest(one, np.zeros(1), np.zeros((1, 1)), laws, np.array([LOAD]), STEPPED_TOLERANCE)
     alone = HALF_SPACE.solve(BODY - ROUGH[5:36], load=LOAD, rtol=1e-9)
     assert approach[0] == pytest.approx(alone.approach, rel=1e-4)
 

@@ -125,7 +125,10 @@ def test_a_body_at_rest_is_where_the_law_carries_its_load(load):
     def law(approach):
         return evaluate(PREPARED[1], 7, approach)
 
-    one = [Body.rigid(1.0, load)], np.zeros(1), np.zeros((1, 1)), [law], np.array([load])
+    def laws(approach):
+        return np.array([law(at) for at in approach]).T
+
+    one = [Body.rigid(1.0, load)], np.zeros(1), np.zeros((1, 1)), laws, np.array([load])
     _, _, approach, stiffness = at_rest(*one)
     root = brentq(lambda s: law(s)[0] - load, -1e-3, 1e-2, xtol=1e-18)
     assert_allclose(approach, root, rtol=1e-7)

@@ -88,12 +88,12 @@ test_what_fails_is_told = refusals(
 
 def test_contacts_that_cannot_carry_together_are_told():
     def weak(approach):
-        return min(max(1e6 * approach, 0.0), 2.51), 1e6 if 0.0 < approach < 2.51e-6 else 0.0
+        return np.clip(1e6 * approach, 0.0, 2.51), np.where((approach > 0.0) & (approach < 2.51e-6), 1e6, 0.0)
 
     one, none = np.ones((1, 1)), np.zeros((1, 1))
     pair = Body(one, none, none, np.ones((2, 1)), np.array([5.0]), np.zeros(2))
     with pytest.raises(ComputationError, match=r"do not come to rest on their contacts \(2\) at the start"):
-        at_rest([pair], np.array([0.0, 1e4]), np.zeros((2, 2)), [weak, weak], np.full(2, 2.5))
+        at_rest([pair], np.array([0.0, 1e4]), np.zeros((2, 2)), weak, np.full(2, 2.5))
 
 
 def warned(law, over=BEAM, **changes):

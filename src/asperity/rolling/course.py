@@ -113,19 +113,37 @@ def laid_out(contact: RollingContact, steps: range) -> Any:
     return _at_height(contact, contact.law.prepare(contact.positions(steps)), steps)
 
 
-def laid_together(contacts: Sequence[RollingContact], steps: range) -> list[Prepared]:
-    """As `laid_out`, of contacts with compiled laws: one that several have is laid out once, for all."""
-    alike: dict[int, list[int]] = {}
+def laid_together(contacts: Sequence[RollingContact], steps: range) -> list[Any]:
+    """As `laid_out`: a compiled law that several contacts have is laid out once, for all of them."""
+    of_laws: dict[int, list[int]] = {}
     for k, contact in enumerate(contacts):
-        alike.setdefault(id(contact.law), []).append(k)
+        of_laws.setdefault(id(contact.law), []).append(k)
     found = {}
-    for members in alike.values():
+    for members in of_laws.values():
         along = np.concatenate([contacts[k].positions(steps) for k in members])
-        law: Any = contacts[members[0]].law.prepare(along)
+        law = contacts[members[0]].law.prepare(along)
         for i, k in enumerate(members):
-            own = _at_rows(law, range(i * len(steps), (i + 1) * len(steps)))
-            found[k] = _at_height(contacts[k], own, steps)
+            if isinstance(law, Prepared):
+                own = _at_rows(law, range(i * len(steps), (i + 1) * len(steps)))
+                found[k] = _at_height(contacts[k], own, steps)
+            else:
+                found[k] = laid_out(contacts[k], steps)
     return [found[k] for k in range(len(contacts))]
+
+
+def alike(pieces: Sequence[tuple[int, Prepared]]) -> list[tuple[list[int], Prepared]]:
+    """Contacts whose laws differ in what they have at every step alone, with their first steps as one law."""
+    sharing: dict[Any, dict[int, Prepared]] = {}
+    for k, law in pieces:
+        shared = [each for name, each in law._asdict().items() if name not in ALONG]
+        key = tuple(id(each) if isinstance(each, np.ndarray) else each for each in shared)
+        sharing.setdefault(key, {})[k] = law
+    return [(list(of), _first_steps(list(of.values()))) for of in sharing.values()]
+
+
+def _first_steps(laws: Sequence[Prepared]) -> Prepared:
+    along = {name: np.concatenate([getattr(law, name)[:1] for law in laws]) for name in ALONG}
+    return laws[0]._replace(**along)
 
 
 def _at_rows(law: Prepared, rows: range) -> Prepared:

@@ -9,7 +9,7 @@ from asperity.arguments import Array, Integers, positive, require
 from asperity.errors import Outcome
 from asperity.progress import Progress
 from asperity.rolling import assembly
-from asperity.rolling.course import Course, laid_out
+from asperity.rolling.course import Course, laid_together
 from asperity.rolling.ground import ground_of, warn_if_bent
 from asperity.rolling.ledger import Ledger, ledger_of
 from asperity.rolling.mechanism import Mechanism
@@ -168,6 +168,6 @@ def rest_of(mechanism: Mechanism, step: int, load: float) -> Array:
     ground = ground_of(course, np.zeros((0, mechanism.first_modes[-1])), at)
     loads = np.full(course.contacts, load)
     system = assembly.system_of(ground, course.bodies, loads, 1.0, mechanism.constant)
-    laws = [laid_out(contact, at) for contact in mechanism.contacts]
+    laws = laid_together(mechanism.contacts, at)
     rest = standing(ground, course.bodies, system, laws)
     return rest.motion.displacement[: mechanism.first_modes[-1]]

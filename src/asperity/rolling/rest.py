@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -16,11 +15,12 @@ from asperity.kernels.pointforce import Prepared, evaluate_all
 from asperity.kernels.rail import preload_channels
 from asperity.kernels.stepping import POWERS, Motion, System
 from asperity.laws.spec import SteppedLaw
+from asperity.rolling.course import alike
 from asperity.rolling.ground import Ground
 from asperity.structures.body import Body
 
-Evaluation = Callable[[float], tuple[float, float]]
-"""Force, N, and stiffness, N/m, of an approach, m."""
+Evaluation = Callable[[Array], tuple[Array, Array]]
+"""Forces (n,), N, and stiffnesses (n,), N/m, of n contacts at an approach each (n,), m."""
 FIRST_MOVE = 1e-6  # m, of the contacts
 LARGEST_MOVE = 1.0  # m
 ITERATIONS = 200
@@ -38,12 +38,12 @@ def at_rest(
     bodies: Sequence[Body],
     displaced: Array,
     compliance: Array,
-    laws: Sequence[Evaluation],
+    laws: Evaluation,
     scale: Array,
     relative: float = TOLERANCE,
     free: tuple[Array, Array] | None = None,
 ) -> tuple[Array, Array, Array, Array]:
-    """Where bodies rest on laws, which give force, N, and stiffness, N/m, of an approach, m.
+    """Where bodies rest on the laws of all contacts.
 
     Coordinates of free modes (f,), then displacements y of all bodies (d,), one after another, upwards, and
     of the contacts (n,) their forces, N, approaches as the laws see them, m, and stiffnesses, N/m.
@@ -79,7 +79,7 @@ def equilibrium(
     shapes: Array,
     displaced: Array,
     scale: Array,
-    laws: Sequence[Evaluation],
+    laws: Evaluation,
     relative: float = TOLERANCE,
 ) -> tuple[Array, Array, Array, Array]:
     """Coordinates x (d,) with K x + p = Aᵀ F, and forces, approaches and stiffnesses of the contacts (n,).
@@ -92,7 +92,7 @@ def equilibrium(
     def state(x: Array) -> tuple[Array, Array, Array, Array]:
         """Approaches, forces, stiffnesses, and the gradient of the energy."""
         approach = -(displaced + shapes @ x)
-        force, stiffness = np.array([law(float(at)) for law, at in zip(laws, approach, strict=True)]).T
+        force, stiffness = laws(approach)
         return approach, force, stiffness, matrix @ x + pressing - shapes.T @ force
 
     x = np.zeros(len(pressing))
@@ -115,7 +115,7 @@ def equilibrium(
         most = float(np.clip(2.0 * np.abs(shapes @ move).max(), FIRST_MOVE, LARGEST_MOVE))
         x = x + move
     raise ComputationError(
-        f"the bodies do not come to rest on their contacts ({len(laws)}) at the start of the path: under "
+        f"the bodies do not come to rest on their contacts ({len(scale)}) at the start of the path: under "
         f"loads of {_some(scale)} N the last forces are {_some(force)} N, at approaches of "
         f"{_some(approach)} m",
         "smaller loads, or contact.approaches that reach higher forces",
@@ -134,12 +134,21 @@ def _some(values: Array) -> str:
     return ", ".join(f"{value:.4g}" for value in values[:8])
 
 
-def evaluated(law: Prepared | SteppedLaw, damper: float, approach: float) -> tuple[float, float]:
-    """Force, N, and stiffness, N/m, of a law at the start, with its damper's force, N, for an approach, m."""
-    if not isinstance(law, Prepared):
-        return law.evaluate(0, approach)
-    force, stiffness, _ = evaluate_all(law, np.array([approach]), 0)
-    return float(force[0]) + damper, float(stiffness[0])
+def evaluated(laws: Sequence[Prepared | SteppedLaw], dampers: Array) -> Evaluation:
+    """Laws of n contacts at the start, with forces of the dampers of those that are compiled (n,), N."""
+    compiled = alike([(k, law) for k, law in enumerate(laws) if isinstance(law, Prepared)])
+    stepped = [(k, law) for k, law in enumerate(laws) if not isinstance(law, Prepared)]
+
+    def evaluate(approach: Array) -> tuple[Array, Array]:
+        force, stiffness = np.empty((2, len(laws)))
+        for members, together in compiled:
+            elastic, stiffness[members], _ = evaluate_all(together, approach[members], 0)
+            force[members] = elastic + dampers[members]
+        for k, law in stepped:
+            force[k], stiffness[k] = law.evaluate(0, float(approach[k]))
+        return force, stiffness
+
+    return evaluate
 
 
 def shapes_at_contacts(ground: Ground, system: System) -> Array:
@@ -241,7 +250,7 @@ def standing(
     constant = np.pad(system.constant, (0, len(softness) - len(system.constant)))
     free = shapes.any(axis=0) & (system.stiffness == 0.0) & constant.any()
     compliance = ground.yields + (shapes * softness) @ shapes.T + np.diag(system.softening)
-    laws = [partial(evaluated, *each) for each in zip(prepared, dampers.tolist(), strict=True)]
+    laws = evaluated(prepared, dampers)
     looked_up = all(isinstance(law, Prepared) for law in prepared)
     relative = TOLERANCE if looked_up else STEPPED_TOLERANCE
     force = np.concatenate([body.static_loads for body in bodies])
