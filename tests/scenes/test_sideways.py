@@ -49,12 +49,10 @@ def by_places(case, frequency, modes=None, head=PLACE):
         stick_stiffness(hertz.semi_axes(under), (STEEL,) * 2),
     )
     wheel, places = wheel_receptances(modes, 600.0, frequency, PLACE), (np.arange(12) + 0.5) * 0.05
-    shares, squares = [], []
-    for x in places:
-        rail = wheel + track.answers(2.0 * np.pi * frequency, x, x, head)
-        shares.append(-rail[1, 0] / (rail[1, 1] + 1.0 / springs[1]))
-        squares.append(np.abs(wheel[0, 0] + 1.0 / springs[0] + vertical.receptance(frequency, x, x)) ** -2)
-    return places, np.stack(shares), np.stack(squares) / np.mean(squares, axis=0)
+    rail = wheel[:, :, None] + track.answers(2.0 * np.pi * frequency, places, places, head)
+    up = vertical.receptance(frequency, places, places)
+    squares = np.abs(wheel[0, 0] + 1.0 / springs[0] + up) ** -2
+    return places, -rail[1, 0] / (rail[1, 1] + 1.0 / springs[1]), squares / np.mean(squares, axis=0)
 
 
 def of_part(spectra, name):
@@ -95,11 +93,10 @@ def test_what_the_lateral_force_does_to_the_vertical_one_is_told_with_its_sign(o
     tangential = stick_stiffness(case.smooth_contact.semi_axes(under), (STEEL,) * 2)
     track = LateralTrack(case.track.model())
     wheel = wheel_receptances(None, 600.0, frequency, PLACE)
-    energy = np.zeros((2, len(frequency)))
-    for x in (np.arange(12) + 0.5) * 0.05:
-        (vv, vl), (_, ll) = wheel + track.answers(2.0 * np.pi * frequency, x, x, PLACE)
-        vv = vv + 1.0 / normal
-        energy += np.abs([1.0 / (vv - vl**2 / (ll + 1.0 / tangential)), 1.0 / vv]) ** 2
+    places = (np.arange(12) + 0.5) * 0.05
+    (vv, vl), (_, ll) = wheel[:, :, None] + track.answers(2.0 * np.pi * frequency, places, places, PLACE)
+    vv = vv + 1.0 / normal
+    energy = (np.abs([1.0 / (vv - vl**2 / (ll + 1.0 / tangential)), 1.0 / vv]) ** 2).sum(axis=1)
     coupled, free = (band_energies(frequency, each, band / HALF_BAND, band * HALF_BAND) for each in energy)
     found, expected = off["sideways"]["vertical_force_change"].values, 10.0 * np.log10(coupled / free)
     inside = (band > 180.0) & (band < 3500.0)

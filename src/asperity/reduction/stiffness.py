@@ -114,18 +114,23 @@ class ForceCurve:
         g = f if self.exponent == 1.0 else f ** (1.0 / self.exponent)
         interval = np.clip(np.searchsorted(self.coefficients[:, 3], g) - 1, 0, len(self.coefficients) - 1)
         cubic, square, slope, value = np.moveaxis(self.coefficients[interval], -1, 0)
-        low = self.knots[interval]
-        high = self.knots[interval + 1]
-        for _ in range(64):  # halving a cubic's interval to rounding
+        start = self.knots[interval]
+        straight = start + (g - value) / slope
+        curved = (cubic != 0.0) | (square != 0.0)
+        if not curved.any():
+            return straight
+        low, high = start, self.knots[interval + 1]
+        for _ in range(65):  # halving a cubic's interval to rounding
             middle = 0.5 * (low + high)
-            below = self._root(middle)[0] < g
+            if np.all((middle == low) | (middle == high)):
+                break
+            within = middle - start
+            below = ((cubic * within + square) * within + slope) * within + value < g
             low = np.where(below, middle, low)
             high = np.where(below, high, middle)
         end_value, end_slope = self._root(self.knots[-1])
         beyond = self.knots[-1] + (g - end_value) / end_slope
-        curved = np.where(g > end_value, beyond, 0.5 * (low + high))
-        straight = (cubic == 0.0) & (square == 0.0)
-        return np.where(straight, self.knots[interval] + (g - value) / slope, curved)
+        return np.where(curved, np.where(g > end_value, beyond, middle), straight)
 
     def _root(self, s: Array) -> tuple[Array, Array]:
         """The interpolated g and its slope."""

@@ -61,8 +61,8 @@ class Sideways:
         materials = case.rolling.material, case.rolled_over.material
         return self.computed.stiffness, stick_stiffness(shape.semi_axes, materials)
 
-    def rail(self, frequency: Array | Complex, x: float) -> Complex:
-        """Receptances of the rail at the contact (2, 2, f), m/N, at a place along it, m; Hz."""
+    def rail(self, frequency: Array | Complex, x: float | Array) -> Complex:
+        """Receptances of the rail at the contact (2, 2, f), m/N, at a place along it, m, or some; Hz."""
         return self.track.answers(2.0 * np.pi * frequency, x, x, self.computed.case.contact_places[1])
 
     def wheel(self, frequency: Array | Complex) -> Complex:
@@ -85,7 +85,7 @@ class Sideways:
     @cached_property
     def answers(self) -> Complex:
         """A at each place on them (2, 2, n, k), the rail's between its lines."""
-        rails = np.stack([self.rail(self.lines, x) for x in self.places], axis=2)
+        rails = self.rail(self.lines, self.places)
         both = self.wheel(self.fine[0])[:, :, None] + self.between(rails)
         return lateral_rail.at_springs(both, *self.stiffness)
 

@@ -292,18 +292,25 @@ class LateralTrack(LateralParameters):
         motion = self.waves(_angular(frequency)).receptance(x, x0)
         return np.einsum("a,abf,b->f", sideways, motion, sideways)
 
-    def answers(self, omega: Array | Complex, x: float, x0: float, place: float) -> Complex:
+    def answers(self, omega: Array | Complex, x: float | Array, x0: float | Array, place: float) -> Complex:
         """Receptances of the head at a place across it, (2, 2, f), m/N, with those of vertical bending.
 
         Displacement at `x`, vertical and lateral, per vertical and lateral force at `x0`, both at a `place` m
         from the middle, positive towards the field side; downwards, and towards the field side. A vertical
-        force off the middle twists the rail. Angular frequencies (f,), rad/s, that may be complex.
+        force off the middle twists the rail. Angular frequencies (f,), rad/s, that may be complex. At several
+        x and x0 (n,) by the same waves (2, 2, n, f).
         """
-        motion = self.waves(omega).receptance(x, x0)
+        sideways, upright = self.waves(omega), self.track.waves(omega)
         moved = self.contact_shapes(place)
-        found = np.einsum("ma,abf,nb->mnf", moved, motion, moved)
-        found[0, 0] += self.track.waves(omega).receptance(x, x0)
-        return found
+
+        def between(x: float, x0: float) -> Complex:
+            found = np.einsum("ma,abf,nb->mnf", moved, sideways.receptance(x, x0), moved)
+            found[0, 0] += upright.receptance(x, x0)
+            return found
+
+        if not isinstance(x, np.ndarray):
+            return between(x, float(x0))
+        return np.stack([between(*pair) for pair in np.broadcast(x, x0)], axis=2)
 
     def decay_rate(self, frequency: ArrayLike) -> Array:
         """Decay rate (f,), dB/m, of the wave that reaches farthest, −20 lg|λ|/L; frequencies (f,), Hz."""
