@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 
 from asperity import Track
 from asperity.structures.lateral_rail import (
@@ -174,6 +174,13 @@ def test_layers_below_the_sleeper_and_what_bends_count_sideways_too():
     rigid = {"ballast_stiffness": math.inf, "ballast_loss_factor": None}
     slab = LateralTrack(replace(LOSSY, sleeper_mass=10.0, **rigid), **KEEPS)
     assert_allclose(slab.support(OMEGA)[0, 0], LOSSY.pad_stiffness / 3.0 * (1 + 0.15j), rtol=1e-12)
+
+
+def test_answers_at_several_places_are_those_of_each():
+    x, x0 = np.array([0.1, 0.3, 0.9]), np.array([0.3, 0.1, 0.0])
+    found = RAIL.answers(OMEGA, x, x0, 0.01)
+    for n, pair in enumerate(zip(x, x0, strict=True)):
+        assert_array_equal(found[:, :, n], RAIL.answers(OMEGA, *pair, 0.01))
 
 
 def test_a_vertical_force_in_the_middle_does_not_move_the_rail_sideways():

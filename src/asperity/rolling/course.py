@@ -142,7 +142,7 @@ def alike(pieces: Sequence[tuple[int, Prepared]]) -> list[tuple[list[int], Prepa
 
 
 def _first_steps(laws: Sequence[Prepared]) -> Prepared:
-    along = {name: np.concatenate([getattr(law, name)[:1] for law in laws]) for name in ALONG}
+    along: dict[str, Any] = {name: np.concatenate([getattr(law, name)[:1] for law in laws]) for name in ALONG}
     return laws[0]._replace(**along)
 
 
