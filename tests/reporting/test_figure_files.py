@@ -6,13 +6,13 @@ from io import BytesIO
 import numpy as np
 import pytest
 
+from asperity.ranks import Ranked
 from asperity.reporting import chart
 from asperity.reporting.chart import BLUE, Area, Axis, Boxes, Chart, Field, Line, Note, Panel, Rules, Second
 from asperity.reporting.figure import PageFigure, chosen_figures, write_chart, write_figures
 from asperity.reporting.panels import frequency_axis, wavenumber_axis, words_axis
 from asperity.reporting.paper import draw, save_figure
 from asperity.reporting.texture_figures import height_scale, lines_chart, surface_chart
-from asperity.surfaces.statistics import known_heights
 from refusals import refusals
 
 X = np.array([0.0, 1.0, 2.0])
@@ -118,7 +118,7 @@ def test_a_surface_is_drawn(heights, spacing, tmp_path):
     if heights.size > 2000:  # drawn from the normal distribution
         normal = chart.panels[1].marks[-1]
         assert np.trapezoid(normal.y, normal.x) == pytest.approx(1.0, abs=0.01)
-    unit, *_ = height_scale(known_heights([heights]))
+    unit, *_ = height_scale(Ranked([heights]))
     reached = unit * chart.panels[2].marks[0].y[[0, -1]]  # by none, and by all
     assert reached == pytest.approx([np.nanmax(heights), np.nanmin(heights)])
 

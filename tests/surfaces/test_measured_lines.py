@@ -252,6 +252,7 @@ def test_a_long_line_is_held_once_beside_itself(evaluated, most, monkeypatch):
     """Levelled, processed or sorted, in place; all else is pieces of it, and masks of a byte a point."""
     for name in ("levelling.PIECE", "statistics.PIECE", "measured_lines.TOGETHER"):
         monkeypatch.setattr(f"asperity.surfaces.{name}", 2**11)
+    monkeypatch.setattr("asperity.ranks.TOGETHER", 2**11)
     monkeypatch.setattr("asperity.spectra.LONGEST_SEGMENT", 2**11)
     monkeypatch.setattr("asperity.spectra.ROUND", 2**7)
     heights = 1e-6 * np.random.default_rng(0).normal(size=2**17)

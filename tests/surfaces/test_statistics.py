@@ -9,13 +9,13 @@ from scipy import fft
 from scipy.integrate import quad
 
 from asperity.errors import ShortRecordWarning
+from asperity.ranks import Ranked
 from asperity.reporting.texture_figures import surface_chart
 from asperity.surfaces import spectra
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.statistics import (
     areal_statistics,
     homogeneity,
-    known_heights,
     material_ratio_curve,
     profile_statistics,
     rms_slope,
@@ -260,7 +260,7 @@ def test_the_first_of_the_flattest_secants_counts():
 def test_the_curve_falls_from_the_highest_to_the_lowest():
     """Of heights that are spread evenly it is a straight line; missing ones have no part in it."""
     heights = np.append(np.linspace(-1.0, 1.0, 1001), [np.nan] * 10)
-    ratio, height = material_ratio_curve(known_heights([heights[:300], heights[300:]]), 11)
+    ratio, height = material_ratio_curve(Ranked([heights[:300], heights[300:]]), 11)
     assert_allclose(ratio, np.linspace(0, 1, 11))
     assert_allclose(height, 1.0 - 2.0 * ratio, atol=1e-12)
 
@@ -311,6 +311,7 @@ def test_a_large_map_is_not_held_many_times_in_what_is_evaluated(evaluated, most
     """Beside its heights: half of its complex spectrum takes as much, products at lags half more, and ..."""
     for module in ("surfaces.spectra", "surfaces.statistics", "surfaces.levelling"):
         monkeypatch.setattr(f"asperity.{module}.PIECE", 2**12)
+    monkeypatch.setattr("asperity.ranks.TOGETHER", 2**12)
     monkeypatch.setattr("asperity.surfaces.statistics.MOST_POINTS", 16)
     monkeypatch.setattr("asperity.reporting.chart.SEEN", 64)
     surface = HeightMap(1e-6 * np.random.default_rng(4).normal(size=(512, 512)), (1e-6, 1e-6))

@@ -15,8 +15,9 @@ from asperity.case import surface as recipes
 from asperity.errors import InputError, percent
 from asperity.files import write_bytes
 from asperity.parameters import Origin
+from asperity.ranks import Ranked
 from asperity.reporting.figure import write_chart
-from asperity.reporting.texture_figures import lines_chart, surface_chart
+from asperity.reporting.texture_figures import lines_chart, surface_chart, with_octaves
 from asperity.spectra import nominal
 from asperity.surfaces import cleaning, likeness, statistics
 from asperity.surfaces.heightmap import HeightMap, Profile
@@ -117,7 +118,7 @@ def _levelled(file: Path, steps: recipes.Recipe, title: str) -> tuple[Surfaces, 
     }
     shown = len(surfaces) if isinstance(surfaces[0], Profile) else 1
     del read, lines, sized
-    return [surfaces.pop(0).levelled() for _ in range(shown)], sizes
+    return [level(surfaces.pop(0), overwrite=True) for _ in range(shown)], sizes
 
 
 def _side_by_side(surfaces: Surfaces, wanted: bool | None) -> tuple[Profile, ...]:
@@ -147,7 +148,6 @@ def _show(
         say(f"Statistics of the first of {count} maps; choose another one with --index.")
         title += f", the first of {count} maps"
     band, section = _filtered(first, steps)
-    octaves = _third_octaves(lines)
     if isinstance(first, HeightMap):
         spectra = _spectra_of_map(first)
         items = [(item, item.value, item.value) for item in statistics.areal_statistics(first, band)]
@@ -155,7 +155,11 @@ def _show(
     else:
         spectra = _spectra_of_lines(lines)
         items = statistics.line_statistics(lines, band, section)
-        chart = lines_chart([line.heights for line in lines], first.spacing, spectra, octaves)
+        chart = lines_chart([line.heights for line in lines], first.spacing, spectra)
+    ratio = _material_ratio([each.heights for each in lines or levelled[:1]])
+    octaves = _third_octaves(lines)  # last of all: lines are processed where they stand
+    if octaves is not None:
+        chart = with_octaves(chart, octaves)
     lead = "Each line levelled" if beside else "Levelled"
     waves = _band(items[0][0])
     say(f"{lead}; wavelengths {waves}{'; mean (lowest to highest of a line)' * beside}:")
@@ -166,20 +170,26 @@ def _show(
     if slopes := [symbol for symbol in unknown if symbol[1:] in ("dq", "dr")]:
         say(f"No {' and no '.join(slopes)}: slopes by ISO 4287 take {SLOPE_POINTS} points in a row.")
     homogeneous = _homogeneity(first)
-    numbers = _numbers([each.heights for each in lines or levelled[:1]], octaves)
     write_chart(chart, title, picture)
     if isinstance(first, HeightMap) and spectra and psd:
         spectra[AREAL] = psd_radial(cleaning.nearly_complete(first) or first)
     rows = [asdict(item) | ({"lowest": low, "highest": high} if beside else {}) for item, low, high in items]
-    return {"statistics": rows, "homogeneity": homogeneous} | numbers, spectra
+    told = {"statistics": rows, "homogeneity": homogeneous, "material_ratio": ratio}
+    return told | {"third_octaves": _limited(octaves)}, spectra
 
 
-def _numbers(heights: Sequence[Array], octaves: ThirdOctaves | None) -> dict[str, Any]:
-    """The material ratio curve, shares of points and heights, m, that they reach; and one-third octaves."""
+def _material_ratio(heights: Sequence[Array]) -> dict[str, Array]:
+    """Shares of points and heights, m, that they reach."""
+    ratio, height = statistics.material_ratio_curve(Ranked(heights))
+    return {"ratio": ratio, "height": height}
+
+
+def _limited(octaves: ThirdOctaves | None) -> dict[str, Array] | None:
+    """One-third octaves for which there is a limit."""
+    if octaves is None:
+        return None
     names = ("wavelength", "limit", "measured", "processed")
-    bands = octaves and {name: getattr(octaves, name)[octaves.limited] for name in names}
-    ratio, height = statistics.material_ratio_curve(statistics.known_heights(heights))
-    return {"material_ratio": {"ratio": ratio, "height": height}, "third_octaves": bands}
+    return {name: getattr(octaves, name)[octaves.limited] for name in names}
 
 
 def _spectra_of_map(surface: HeightMap) -> Spectra:
@@ -312,8 +322,9 @@ def _homogeneity(surface: HeightMap | Profile) -> dict[str, Any] | None:
 
 
 def _third_octaves(lines: list[Profile]) -> ThirdOctaves | None:
-    """One-third-octave levels of a rail's or wheel's lines and the limit, printed band by band."""
-    found = third_octaves(lines) if lines else None
+    """One-third-octave levels of a rail's or wheel's lines, which are gone, and the limit, printed band by
+    band."""
+    found = third_octaves(lines, overwrite=True) if lines else None
     if found is None:
         return None
     say("One-third octaves, dB re 1 µm, and the limit of EN ISO 3095:2013 for rails; by EN 15610: without")

@@ -1,6 +1,7 @@
 """Figures of surfaces: maps, heights, paths, spectra; of results, and of what a surface file holds."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from itertools import cycle
 from typing import Any
 
@@ -8,6 +9,7 @@ import numpy as np
 from xarray import DataTree
 
 from asperity.arguments import Array
+from asperity.ranks import Ranked
 from asperity.reporting import chart, data, panels
 from asperity.reporting.chart import BLUE, INK, MUTED, VERMILLION, Axis, Chart, Drawn, Line, Mark, Panel
 from asperity.reporting.data import length_unit
@@ -15,7 +17,7 @@ from asperity.reporting.figure import Lines, Of, field, figure
 from asperity.schema import contact
 from asperity.spectra import nominal
 from asperity.surfaces.measured_lines import ThirdOctaves
-from asperity.surfaces.statistics import known_heights, material_ratio_curve
+from asperity.surfaces.statistics import material_ratio_curve
 from asperity.written_numbers import rounded
 
 SLENDER = 2.5
@@ -25,6 +27,8 @@ STRETCHES = 1200
 LOOKS: tuple[tuple[str, chart.Dashes], ...] = ((BLUE, ()), (VERMILLION, (5.0, 1.5)))
 """Of one surface and of another."""
 NORMAL: tuple[str, chart.Dashes] = (MUTED, (3.7, 1.6))
+ENDS = np.array([0.001, 0.999])
+"""Shares of the points between which a scale of heights reaches."""
 
 
 def map_panel(
@@ -56,34 +60,31 @@ def _edges(points: Array, size: float) -> tuple[float, float]:
     return float(points[0] - half) / size, float(points[-1] + half) / size
 
 
-def height_scale(known: Array) -> tuple[float, str, float, float]:
-    """Unit of heights and its symbol; limits in it about the mean that leave out 0.1 % at either end.
-
-    Of `known_heights`, whose order changes.
-    """
-    middle = known.mean()
-    ends = np.percentile(known, [0.1, 99.9], overwrite_input=True)
-    reach = np.abs(ends - middle).max() or 1e-9
+def height_scale(known: Ranked) -> tuple[float, str, float, float]:
+    """Unit of heights and its symbol; limits in it about the mean that leave out 0.1 % at either end."""
+    middle = sum(float(piece.sum()) for piece in known.pieces()) / known.count
+    reach = float(np.abs(known.quantiles(ENDS) - middle).max()) or 1e-9
     size, symbol = length_unit(reach)
     return size, symbol, float(middle - reach) / size, float(middle + reach) / size
 
 
 def height_map(x: Array, y: Array, heights: Array, **place: Any) -> Panel:
     """Heights (nx, ny) in m from above."""
-    size, symbol, low, high = height_scale(known_heights([heights]))
+    size, symbol, low, high = height_scale(Ranked([heights]))
     return map_panel(x, y, heights / size, (f"height / {symbol}", low, high), **place)
 
 
-def distribution(known: Array) -> tuple[Array, Array]:
-    """Distribution of heights (n,), m: edges of bins, and density in them, 1/m."""
-    bins = int(np.clip(2 * len(known) ** (1 / 3), 10, 80))  # Rice's rule
-    low = known.min()
-    high = known.max()
+def distribution(known: Ranked) -> tuple[Array, Array]:
+    """Distribution of heights, m: edges of bins, and density in them, 1/m."""
+    bins = int(np.clip(2 * known.count ** (1 / 3), 10, 80))  # Rice's rule
+    low = known.lowest
+    high = known.highest
     if low == high:
         low = low - 0.5e-9
         high = high + 0.5e-9
-    density, edges = np.histogram(known, bins=bins, range=(low, high), density=True)
-    return edges, density
+    often = sum(np.histogram(piece, bins, (low, high))[0] for piece in known.pieces())
+    edges = np.histogram_bin_edges(np.zeros(0), bins, (low, high))
+    return edges, often / (known.count * np.diff(edges))
 
 
 def height_histogram(
@@ -146,7 +147,7 @@ def texture_sample(tree: DataTree, lines: Lines) -> Drawn:
     if not np.nanmax(np.abs(heights)) > 0:
         return
     slender = bool(np.ptp(x) > SLENDER * np.ptp(y))  # then the heights stand below the map
-    known = known_heights([heights])
+    known = Ranked([heights])
     named = {"sample": distribution(known)}
     height, below = (1.9, 2.7) if slender else (4.2, 4.2)
     yield height_map(x, y, heights, title="first sample" + _between(tree), height=height, share=1.25)
@@ -253,6 +254,8 @@ def running_in(tree: DataTree, lines: Lines) -> Drawn:
 
 NamedSpectra = Mapping[str, tuple[Array, Array]]
 """Wavenumbers above zero, cycles/m, and one-sided PSD, m³, by name."""
+SPECTRA: dict[str, Any] = {"height": 3.2, "share": 2.0}
+"""Place of spectra, or of one-third octaves."""
 
 
 def surface_chart(heights: Array, spacing: tuple[float, float], spectra: NamedSpectra) -> Chart:
@@ -268,49 +271,48 @@ def surface_chart(heights: Array, spacing: tuple[float, float], spectra: NamedSp
     steps = length * shares / seen.shape
     x, y = (step * np.arange(n, dtype=np.float64) for n, step in zip(seen.shape, steps, strict=True))
     above = height_map(x, y, seen, equal=equal, height=1.9 if slender else 4.2, share=1.25)
-    return _with_statistics(above, known_heights([heights]), spectra, None, beside=not slender)
+    return _with_statistics(above, Ranked([heights]), spectra, beside=not slender)
 
 
-def lines_chart(
-    lines: Sequence[Array], spacing: float, spectra: NamedSpectra, octaves: ThirdOctaves | None = None
-) -> Chart:
+def lines_chart(lines: Sequence[Array], spacing: float, spectra: NamedSpectra) -> Chart:
     """Lay out lines measured side by side, one above the other, with their distribution and their spectra.
 
     Levelled heights (n,) and the distance of points along the lines, m, positive out of the material.
     """
-    known = known_heights(lines)
+    known = Ranked(lines)
     above = _lines_panel(lines, spacing, known)
-    return _with_statistics(above, known, spectra, octaves, beside=True)
+    return _with_statistics(above, known, spectra, beside=True)
 
 
-def _with_statistics(
-    above: Panel, known: Array, spectra: NamedSpectra, octaves: ThirdOctaves | None, *, beside: bool
-) -> Chart:
+def with_octaves(chart: Chart, octaves: ThirdOctaves) -> Chart:
+    """The chart of lines with one-third octaves in place of their spectra, where it has any."""
+    *others, spectra = chart.panels
+    return replace(chart, panels=(*others, _octaves_panel(octaves, **SPECTRA, beside=spectra.beside)))
+
+
+def _with_statistics(above: Panel, known: Ranked, spectra: NamedSpectra, *, beside: bool) -> Chart:
     """What heights look like, and how often each occurs, beside it or below, and their spectra."""
     unit = height_scale(known)[:2]
     named = {"heights": distribution(known)}
     histogram = height_histogram(named, unit, height=above.height if beside else 2.7, beside=beside)
     ratio = _ratio_panel(known, unit, beside=not beside, height=3.2 if beside else 2.7)
-    return Chart((above, histogram, ratio, *_spectra_panels(spectra, octaves, beside=beside)))
+    return Chart((above, histogram, ratio, *_spectra_panels(spectra, beside=beside)))
 
 
-def _ratio_panel(known: Array, unit: tuple[float, str], **place: Any) -> Panel:
+def _ratio_panel(known: Ranked, unit: tuple[float, str], **place: Any) -> Panel:
     """Share of the points that reach a height."""
     ratio, height = material_ratio_curve(known)
     curve = Line(100.0 * ratio, height / unit[0], colour=VERMILLION)
     return Panel(Axis("material ratio / %", 0.0, 100.0), Axis(f"height / {unit[1]}"), (curve,), **place)
 
 
-def _spectra_panels(spectra: NamedSpectra, octaves: ThirdOctaves | None, *, beside: bool) -> list[Panel]:
-    """Spectra, or one-third octaves in their place; none of what has no waves."""
-    place: dict[str, Any] = {"height": 3.2, "beside": beside, "share": 2.0}
+def _spectra_panels(spectra: NamedSpectra, *, beside: bool) -> list[Panel]:
+    """Spectra; none of what has no waves."""
     held = {name: pair for name, pair in spectra.items() if (pair[1] > 0).sum() > 1}
-    if held and octaves is not None:
-        return [_octaves_panel(octaves, **place)]
     lines = [
         psd_line(*pair, name, *look) for (name, pair), look in zip(held.items(), cycle(LOOKS), strict=False)
     ]
-    return [psd_panel(lines, **place)] if lines else []
+    return [psd_panel(lines, **SPECTRA, beside=beside)] if lines else []
 
 
 def _octaves_panel(octaves: ThirdOctaves, **place: Any) -> Panel:
@@ -332,11 +334,10 @@ def _octaves_panel(octaves: ThirdOctaves, **place: Any) -> Panel:
     return Panel(along, Axis("roughness / dB re 1 µm"), tuple(marks), title=title, **place)
 
 
-def _lines_panel(lines: Sequence[Array], spacing: float, known: Array) -> Panel:
+def _lines_panel(lines: Sequence[Array], spacing: float, known: Ranked) -> Panel:
     """Lines below each other, and a bar that says how high they are drawn."""
     size, symbol = height_scale(known)[:2]
-    ends = np.percentile(known, [0.1, 99.9], overwrite_input=True)
-    reach = float(np.ptp(ends)) / size or 1.0
+    reach = float(np.ptp(known.quantiles(ENDS))) / size or 1.0
     along, along_symbol = length_unit(longest := max(map(len, lines)) * spacing)
     end = longest / along
     marks: list[Mark] = []

@@ -4,7 +4,6 @@ import math
 import re
 import warnings
 import wave
-from array import array
 from collections import deque
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,6 +14,7 @@ import numpy as np
 from asperity.arguments import Array, NDArray, require
 from asperity.case.table_headings import heading_of
 from asperity.errors import InputError
+from asperity.growing_numbers import GrowingNumbers
 from asperity.studies import kept_signals, rates
 from asperity.studies.times import Clock, clock_of, doubt_rate, rate_beside
 from asperity.surfaces.readers import arrays, guards, matlab, text
@@ -261,7 +261,7 @@ def _of_text(file: Path) -> tuple[Array, list[str]]:
     refuse_decimal_commas(content, file.name)
     if "." not in content and _DECIMAL_COMMA.search(content):
         content = content.replace(",", ".")
-    numbers = array("d")
+    numbers = GrowingNumbers()
     columns = 0
     words: deque[list[str]] = deque(maxlen=2)
     line = 1
@@ -270,7 +270,7 @@ def _of_text(file: Path) -> tuple[Array, list[str]]:
         even = even_rows(lines, separator, "." if separator in (None, ",") else ",")
         if even is not None and even.shape[1] == (columns or even.shape[1]):
             columns = even.shape[1]
-            numbers.frombytes(even.tobytes())
+            numbers.extend(even)
             line += len(lines)
             continue
         for number, cells in lines_of_cells("".join(lines), line):
@@ -287,4 +287,5 @@ def _of_text(file: Path) -> tuple[Array, list[str]]:
             numbers.extend(row)
         line += len(lines)
     require(columns, file.name, "no numbers", "a table of numbers")
-    return np.frombuffer(numbers).reshape(-1, columns), heading_of(words, ["s", *[""] * (columns - 1)])
+    del content, lines  # before the numbers take their whole room
+    return numbers.poured().reshape(-1, columns), heading_of(words, ["s", *[""] * (columns - 1)])

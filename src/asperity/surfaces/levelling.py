@@ -24,23 +24,34 @@ MIRRORED = 8
 QUARTER = 0.5 * math.pi
 ROUNDING = 1e-9
 """Difference from a whole number of quarter turns that is rounding, rad."""
-PIECE = 2**20
+PIECE = 2**18
 """Points of a surface that are looked at in one go."""
 ORDER = 5
 """Degree of the spline that turns a map: a wave of four points is then right within 0.2 %."""
 
 
-def level(surface: S, degree: int | str = "plane") -> S:
+def level(surface: S, degree: int | str = "plane", *, overwrite: bool = False) -> S:
     """Remove a least-squares polynomial, by the word of a case or by its degree; missing points stay missing.
 
     ``"plane"`` or 1 is the mean plane or line, ``"quadratic"`` or 2 a paraboloid, ``"quartic"`` or 4 what a
-    steep cap needs, 0 the mean.
+    steep cap needs, 0 the mean. Heights that nobody needs as they are may be overwritten.
     """
     degrees: dict[Any, int] = {0: 0} | FORMS | {each: each for each in FORMS.values()}
     allowed = "0, the mean, or " + ", ".join(f'"{word}" (or {each})' for word, each in FORMS.items())
     offered = isinstance(degree, int | str | np.integer) and degree in degrees
     require(offered, "degree", shown(degree), allowed)
-    return replace(surface, heights=without_polynomial(surface.heights, degrees[degree]))
+    into = own(surface.heights) if overwrite else None
+    return replace(surface, heights=without_polynomial(surface.heights, degrees[degree], into=into))
+
+
+def own(heights: Array) -> Array:
+    """Heights that nobody needs as they are, to be written to; a copy of those that cannot be."""
+    owner = heights if heights.base is None else heights.base
+    if not (isinstance(owner, np.ndarray) and owner.flags.owndata):
+        return heights.copy()
+    for each in (owner, heights):
+        each.flags.writeable = True
+    return heights
 
 
 def band_limit(surface: S, longest: float | None = None, shortest: float | None = None) -> S:
@@ -179,10 +190,12 @@ def without_polynomial(heights: Array, degree: int, *, into: Array | None = None
         right += [np.sum(term * heights[piece], where=known) for term in of_piece]
     weights = np.linalg.lstsq(matrix, right, rcond=None)[0]
     left = np.empty(heights.shape) if into is None else into
-    for piece in pieces(PIECE // 16):  # beside both arrays of heights, and in the processor's cache
+    for piece in pieces(PIECE // 4):  # beside both arrays of heights, and in the processor's cache
         weighted = (w * term for w, term in zip(weights, terms(piece), strict=True))
         left[piece] = heights[piece] - sum(weighted, np.zeros(heights[piece].shape))
-    left.flags.writeable = False  # it need not be copied
+    for each in (left, left.base):
+        if isinstance(each, np.ndarray):
+            each.flags.writeable = False  # it need not be copied
     return left
 
 

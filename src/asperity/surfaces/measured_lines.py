@@ -4,7 +4,7 @@ Later editions of the standard have not been compared.
 """
 
 import math
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain, pairwise
 
@@ -12,14 +12,14 @@ import numpy as np
 import scipy
 from scipy import fft
 
-from asperity.arguments import Array, Flags, require
+from asperity.arguments import Array, Flags, Indices, require
 from asperity.errors import CoarseSamplingWarning
 from asperity.reference.cnossos import rail_roughness
 from asperity.spectra import band_levels, psd
 from asperity.surfaces.bands import LIKELY_WAVELENGTHS, MICROMETRE, likely_band
 from asperity.surfaces.cleaning import nearly_complete
 from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.surfaces.levelling import without_polynomial
+from asperity.surfaces.levelling import own, without_polynomial
 from asperity.written_numbers import count_of, rounded
 
 ROLLED_RADIUS = 0.375
@@ -127,46 +127,61 @@ def remove_spikes(profile: Profile) -> tuple[Profile, int, int]:
 
 
 def _sharp_and_feet(heights: Array, spacing: float) -> tuple[Flags, Flags]:
-    """Where a line (n,) bends as sharply as a spike, and where spikes may end, its own ends among them."""
-    count = len(heights)
-    sharp = np.zeros(count, dtype=bool)
-    foot = np.zeros(count, dtype=bool)
-    foot[[0, -1]] = True
-    for first in range(1, count - 1, TOGETHER):
-        last = min(first + TOGETHER, count - 1)
-        start = max(first - 2, 0)
-        bend = np.diff(heights[start : last + 2], 2)
-        sharp[first:last] = bend[first - 1 - start :][: last - first] < SPIKE_CURVATURE * spacing**2
-        highest = bend > 0.0
-        highest[1:] &= bend[1:] >= bend[:-1]
-        highest[:-1] &= bend[:-1] >= bend[1:]
-        foot[first:last] = highest[first - 1 - start :][: last - first]
+    """Where a line (n,) bends as sharply as a spike, and where spikes may end, but for its own ends."""
+    sharp, foot = np.zeros((2, len(heights)), dtype=bool)
+    bend = np.diff(heights, 2)
+    sharp[1:-1] = bend < SPIKE_CURVATURE * spacing**2
+    highest = bend > 0.0
+    highest[1:] &= bend[1:] >= bend[:-1]
+    highest[:-1] &= bend[:-1] >= bend[1:]
+    foot[1:-1] = highest
     return sharp, foot
 
 
 def _cut_spikes(heights: Array, spacing: float) -> tuple[int, int]:
-    """Cut the spikes off a line (n,), m, in place; return how many, and of how many points."""
-    sharp, foot = _sharp_and_feet(heights, spacing)
+    """Cut the spikes off a line (n,), m, in place; return how many, and of how many points.
+
+    Piece by piece, each from a foot to the last one in it; the ends of the line are feet.
+    """
+    count = len(heights)
     removed = 0
     changed = 0
-    if not sharp.any():
-        return removed, changed
-    feet = np.flatnonzero(foot)
-    del foot
-    for number in range(0, len(feet) - 1, TOGETHER):
-        some = feet[number : number + TOGETHER + 1]
-        first = some[0]
-        last = some[-1]
-        points = np.diff(some)
-        chord = np.interp(np.arange(first, last), some, heights[some])
-        rise = np.maximum.reduceat(heights[first:last] - chord, some[:-1] - first)
-        spikes = np.logical_or.reduceat(sharp[first:last], some[:-1] - first)
-        spikes &= rise > (points * spacing) ** 2 / SPIKE_SCALE
-        within = np.repeat(spikes, points)
-        heights[first:last][within] = chord[within]
-        removed = removed + int(spikes.sum())
-        changed = changed + int((points[spikes] - 1).sum())
+    first = 0
+    size = TOGETHER
+    before = heights[:0]
+    while first < count - 1:
+        stop = min(first + size, count)
+        seen = np.append(before, heights[first : stop + 2])
+        sharp, foot = (each[len(before) :][: stop - first] for each in _sharp_and_feet(seen, spacing))
+        foot[0] = True
+        foot[-1] |= stop == count
+        feet = np.flatnonzero(foot)
+        last = int(feet[-1])
+        size = TOGETHER if last else 2 * size
+        if not last:
+            continue
+        before = heights[max(first + last - 2, 0) : first + last].copy()  # as they were, for the next piece
+        spikes, points = _cut_between(heights[first : first + last + 1], sharp, feet, spacing)
+        removed += spikes
+        changed += points
+        first += last
     return removed, changed
+
+
+def _cut_between(heights: Array, sharp: Flags, feet: Indices, spacing: float) -> tuple[int, int]:
+    """Cut the spikes off a piece of a line between its feet, in place; return how many, and of how many
+    points."""
+    points = np.diff(feet)
+    begins = feet[:-1]
+    spikes = np.logical_or.reduceat(sharp[: feet[-1]], begins)
+    if not spikes.any():
+        return 0, 0
+    chord = np.interp(np.arange(feet[-1]), feet, heights[feet])
+    rise = np.maximum.reduceat(heights[:-1] - chord, begins)
+    spikes &= rise > (points * spacing) ** 2 / SPIKE_SCALE
+    within = np.repeat(spikes, points)
+    heights[:-1][within] = chord[within]
+    return int(spikes.sum()), int((points[spikes] - 1).sum())
 
 
 def roll_over(profile: Profile, radius: float = ROLLED_RADIUS) -> Profile:
@@ -253,18 +268,28 @@ def full_lines(lines: Sequence[Profile]) -> list[Profile]:
     return [Profile(line.heights[:shortest], complete[0].spacing) for line in complete]
 
 
-def third_octaves(lines: Sequence[Profile]) -> ThirdOctaves | None:
+def third_octaves(lines: Sequence[Profile], *, overwrite: bool = False) -> ThirdOctaves | None:
     """Levels of lines measured side by side, or of one, m, and the limit of EN ISO 3095:2013.
 
     A Hann window lies over each whole line, so that its ends count less. None of lines that resolve fewer
     than six bands of the limit, 400 mm to 3.15 mm. Whether lines have been processed after EN 15610 already
-    their file does not say: of those the levels as measured count.
+    their file does not say: of those the levels as measured count. Heights of levelled lines that nobody
+    needs any more may be overwritten.
     """
     full = full_lines(lines)
     if not full or 4.0 * full[0].spacing > LIKELY_WAVELENGTHS[1] or full[0].size < LIKELY_WAVELENGTHS[0]:
         return None
-    wavelength, before = _levels(line.levelled() for line in full)
-    _, after = _levels(map(_processed_and_levelled, full))
+    whole = overwrite and all(each.shape == full[0].shape and not each.missing_share for each in lines)
+    sums: list[Array | float] = [0.0, 0.0]
+    for line in full:
+        heights = own(line.heights) if overwrite else line.heights.copy()
+        for step, processed in enumerate(_before_and_after(heights, line.spacing, levelled=whole)):
+            wavenumber, density = psd(processed, line.spacing)
+            sums[step] = sums[step] + density
+        del heights, processed  # before the next one is made
+    centres, before = band_levels(wavenumber, sums[0] / len(full), MICROMETRE)
+    _, after = band_levels(wavenumber, sums[1] / len(full), MICROMETRE)
+    wavelength = 1.0 / centres
     nominal, limits = rail_roughness("iso3095")
     nominal, limits = nominal[likely_band(nominal)], limits[likely_band(nominal)]
     same = np.abs(np.log10(wavelength[:, None] / nominal)) < 0.03
@@ -273,25 +298,25 @@ def third_octaves(lines: Sequence[Profile]) -> ThirdOctaves | None:
     return None if few else ThirdOctaves(wavelength, before, after, limit)
 
 
-def _processed_and_levelled(line: Profile) -> Profile:
-    """A complete line without spikes, rolled over and levelled: held once, however long."""
-    heights = line.heights.copy()
-    _cut_spikes(heights, line.spacing)
-    _lift_to_circle(heights, line.spacing, ROLLED_RADIUS)
-    return replace(line, heights=without_polynomial(heights, 1, into=heights))
+def _before_and_after(heights: Array, spacing: float, *, levelled: bool) -> Iterator[Array]:
+    """Heights of a complete line, levelled; then, as they were, without spikes, rolled over and levelled.
 
-
-def _levels(lines: Iterable[Profile]) -> tuple[Array, Array]:
-    """Wavelengths, m, and levels, dB re 1 µm, of levelled lines, mean over their powers; made one by one."""
-    total = np.zeros(())
-    count = 0
-    for line in lines:
-        wavenumber, density = psd(line.heights, line.spacing)
-        total = total + density
-        count += 1
-        del line, density  # before the next one is made
-    centres, levels = band_levels(wavenumber, total / count, MICROMETRE)
-    return 1.0 / centres, levels
+    Held once, however long.
+    """
+    if levelled:
+        yield heights
+    else:
+        ends = [0, len(heights) - 1]
+        tilt = heights[ends]
+        yield without_polynomial(heights, 1, into=heights)
+        tilt = tilt - heights[ends]
+        heights = own(heights)
+        for first in range(0, len(heights), TOGETHER):
+            piece = heights[first : first + TOGETHER]
+            piece += np.interp(np.arange(first, first + len(piece)), ends, tilt)
+    _cut_spikes(heights, spacing)
+    _lift_to_circle(heights, spacing, ROLLED_RADIUS)
+    yield without_polynomial(heights, 1, into=heights)
 
 
 def lines_of(surface: HeightMap) -> tuple[Profile, ...]:

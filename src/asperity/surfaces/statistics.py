@@ -1,15 +1,16 @@
 """Roughness parameters of maps, lines and strips of any length; whether a map is the same everywhere."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
-from itertools import chain, pairwise, starmap
+from itertools import pairwise, starmap
 
 import numpy as np
 import scipy
 
 from asperity.arguments import Array, require
+from asperity.ranks import Ranked, known_pieces
 from asperity.spectra import psd
 from asperity.surfaces import cleaning, levelling, spectra, synthesis
 from asperity.surfaces.heightmap import HeightMap, Profile
@@ -136,17 +137,9 @@ def line_statistics(
     return means
 
 
-def _known(heights: Array) -> Iterator[Array]:
-    """Heights that are known, of any shape, piece by piece."""
-    flat = heights.reshape(-1)
-    for first in range(0, flat.size, PIECE):
-        piece = flat[first : first + PIECE]
-        yield piece[np.isfinite(piece)]
-
-
 def _mean_height(heights: Array) -> float:
     """Mean of the heights that are known."""
-    sums = [(piece.sum(), piece.size) for piece in _known(heights)]
+    sums = [(piece.sum(), piece.size) for piece in known_pieces([heights])]
     total, count = map(sum, zip(*sums, strict=True))
     return float(total / count)
 
@@ -158,7 +151,7 @@ def _powers(heights: Array) -> tuple[Array, float]:
     count = 0
     low = np.inf
     high = -np.inf
-    for piece in _known(heights):
+    for piece in known_pieces([heights]):
         z = piece - mean
         sums += [np.abs(z).sum(), *(np.sum(z**n) for n in (2, 3, 4))]
         count += z.size
@@ -231,26 +224,10 @@ def _slopes(heights: Array, spacing: float, axis: int) -> Array:
     return np.moveaxis(slope, 0, axis)
 
 
-def known_heights(several: Sequence[Array]) -> Array:
-    """Heights (n,) that are known, of arrays of any shape, in one that nobody else holds.
-
-    It may be put in another order: that takes no copy.
-    """
-    known = np.empty(sum(int(np.isfinite(heights).sum()) for heights in several))
-    first = 0
-    for piece in chain.from_iterable(map(_known, several)):
-        known[first : first + piece.size] = piece
-        first += piece.size
-    return known
-
-
-def material_ratio_curve(known: Array, points: int = 201) -> tuple[Array, Array]:
-    """Material ratio (points,), 0 to 1, and the heights, m, that this share of the points reach or exceed.
-
-    Of `known_heights`, whose order changes.
-    """
+def material_ratio_curve(known: Ranked, points: int = 201) -> tuple[Array, Array]:
+    """Material ratio (points,), 0 to 1, and the heights, m, that this share of the points reach or exceed."""
     ratio = np.linspace(0.0, 1.0, points)
-    return ratio, np.quantile(known, 1.0 - ratio, overwrite_input=True)
+    return ratio, known.quantiles(1.0 - ratio)
 
 
 def stratified(heights: Array, mean: float = 0.0) -> dict[str, float]:
@@ -262,56 +239,62 @@ def stratified(heights: Array, mean: float = 0.0) -> dict[str, float]:
     their mean on; missing ones are left out. By the symbols of `PARAMETERS`: k, pk and vk, m, and the
     material ratios mr1, where peaks end, and mr2, where valleys begin.
     """
-    rising = known_heights([heights])
-    rising.sort()
-    rising -= mean
-    falling = rising[::-1]
-    count = rising.size
+    known = Ranked([heights])
+    count = known.count
     width = min(max(2, round(CORE * count)), count - 1)
-    first = _flattest(falling, width)
-    core = falling[first : first + width + 1]
-    slope = _slope_over(core, 1.0 / count)
-    top = float(core.mean()) - slope * (first + 0.5 * width + 0.5) / count
+    first = _flattest(known, width)
+    level, slope = _line_through(known, first, first + width + 1)
+    level -= mean
+    top = level - slope * (first + 0.5 * width + 0.5) / count
     bottom = top + slope
-    above = falling[: count - np.searchsorted(rising, top, side="right")]
-    below = rising[: np.searchsorted(rising, bottom, side="left")]
-    peaks = 2.0 * _mean_beyond(above, top) if above.size else 0.0
-    valleys = -2.0 * _mean_beyond(below, bottom) if below.size else 0.0
-    ratios = {"mr1": above.size / count, "mr2": 1.0 - below.size / count}
-    return {"k": top - bottom, "pk": peaks, "vk": valleys} | ratios
+    peaks, above = _beyond(known, 1.0, mean + top)
+    valleys, below = _beyond(known, -1.0, mean + bottom)
+    ratios = {"mr1": above / count, "mr2": 1.0 - below / count}
+    return {"k": top - bottom, "pk": 2.0 * peaks, "vk": 2.0 * valleys} | ratios
 
 
-def _slope_over(values: Array, step: float) -> float:
-    """Slope of the line of least squares through values (n,) a step apart, piece by piece."""
-    middle = 0.5 * (len(values) - 1)
+def _line_through(known: Ranked, first: int, last: int) -> tuple[float, float]:
+    """Mean of the values from one rank to before another, from the highest on, and slope of the line of least
+    squares through them over the share of all."""
+    middle = 0.5 * (first + last - 1)
+    total = 0.0
     along = 0.0
     squares = 0.0
-    for first in range(0, len(values), PIECE):
-        piece = values[first : first + PIECE]
-        about = (np.arange(first, first + len(piece)) - middle) * step
+    for start in range(first, last, PIECE):
+        stop = min(start + PIECE, last)
+        piece = _falling(known, start, stop)
+        about = (np.arange(start, stop) - middle) / known.count
+        total += float(piece.sum())
         along += float(about @ piece)
         squares += float(about @ about)
-    return along / squares
+    return total / (last - first), along / squares
 
 
-def _mean_beyond(values: Array, level: float) -> float:
-    """Mean of values (n,) less a level, piece by piece."""
-    pieces = (values[first : first + PIECE] for first in range(0, len(values), PIECE))
-    return sum(float((piece - level).sum()) for piece in pieces) / len(values)
+def _falling(known: Ranked, first: int, last: int) -> Array:
+    """Values of some ranks, from the highest on, (last - first,)."""
+    return known.between(known.count - last, known.count - first)[::-1]
 
 
-def _flattest(falling: Array, width: int) -> int:
+def _beyond(known: Ranked, sign: float, level: float) -> tuple[float, int]:
+    """How far values are beyond a level, above it or below, on the mean, and how many; 0 of none."""
+    sums = [0.0, 0]
+    for piece in known.pieces():
+        beyond = sign * (piece - level)
+        sums = [sums[0] + float(beyond.sum(where=beyond > 0.0)), sums[1] + np.count_nonzero(beyond > 0.0)]
+    return sums[0] / max(sums[1], 1), int(sums[1])
+
+
+def _flattest(known: Ranked, width: int) -> int:
     """First point of a falling curve from which on it falls least, or nearly, over a width, points."""
-    count = len(falling) - width
-    pieces = [slice(first, min(first + PIECE, count)) for first in range(0, count, PIECE)]
+    count = known.count - width
+    pieces = [(first, min(first + PIECE, count)) for first in range(0, count, PIECE)]
 
-    def drops(piece: slice) -> Array:
-        return falling[piece] - falling[piece.start + width : piece.stop + width]
+    def drops(first: int, last: int) -> Array:
+        return _falling(known, first, last) - _falling(known, first + width, last + width)
 
-    least = min(float(drops(piece).min()) for piece in pieces)
-    most = least + 1e-9 * (falling[0] - falling[-1])
-    flat = next(piece for piece in pieces if (drops(piece) <= most).any())
-    return flat.start + int(np.argmax(drops(flat) <= most))
+    most = min(float(drops(*piece).min()) for piece in pieces) + 1e-9 * (known.highest - known.lowest)
+    found = ((first, drops(first, last) <= most) for first, last in pieces)
+    return next(first + int(np.argmax(flat)) for first, flat in found if flat.any())
 
 
 FEWEST_ROWS = 1024

@@ -14,6 +14,7 @@ import numpy as np
 from asperity.arguments import Array, listed, require
 from asperity.errors import InputError
 from asperity.files import amount
+from asperity.growing_numbers import GrowingNumbers
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.readers import guards, positions
 from asperity.surfaces.readers.belief import doubt_depth
@@ -53,7 +54,6 @@ PROBE = 1 << 13  # bytes at either end of a file that say whether it is text
 END = 1 << 14  # characters at the end of a text, in which ...
 SAMPLE = 50  # ... so many lines of numbers tell how they are written
 PIECE = 1 << 16  # fields of a long line that are split off at a time
-POURED = 1 << 14  # numbers that are moved at a time
 
 _CHECK = "Check the file and its separators."
 _NUMERIC = re.compile(r"(?:[\d\s.,;+\-eEdD*'’]++|nan|bad|null|none|na|n/a)*+", re.IGNORECASE)
@@ -124,9 +124,10 @@ def read(path: Path, hints: Hints) -> list[guards.Surface]:
     content = _unquoted(read_text(path, path.name, "heights as text", largest=size, latin=True))
     sample = _last_numbers(content)
     dialect = _dialect(sample, hints.decimal, path.name)
-    header_lines, table = _table(content, dialect, path.name)
-    del content
-    table = guards.without_marks(table)
+    rows = _table(content, dialect, path.name)
+    del content  # before the numbers take their whole room
+    header_lines = rows.header
+    table = guards.without_marks(rows.finished())
     all_titles = titles_of(header_lines, dialect.delimiter, table.shape[1])
     table, titles = columns_of_heights(table, all_titles)
     source = path.name + _columns_told(all_titles, titles)
@@ -240,8 +241,8 @@ def _refuse_thousands(text: str, delimiter: str | None, source: str) -> None:
         raise InputError(source, received, allowed, "Export them without marks between thousands.")
 
 
-def _table(content: str, dialect: Dialect, source: str) -> tuple[list[str], Array]:
-    """Read lines above and among the numbers, and the numbers (rows, columns)."""
+def _table(content: str, dialect: Dialect, source: str) -> _Table:
+    """Read the numbers, and lines above and among them."""
     table = _Table(dialect, source)
     number = 0
     decimal = "," if dialect.decimal_comma else "."
@@ -253,7 +254,7 @@ def _table(content: str, dialect: Dialect, source: str) -> tuple[list[str], Arra
             for place, text in enumerate(lines, number + 1):
                 table.take_line(place, text)
         number += len(lines)
-    return table.header, table.finished()
+    return table
 
 
 @dataclass
@@ -264,7 +265,7 @@ class _Table:
     source: str
     header: list[str] = field(default_factory=list)
     characters: int = 0  # of the header
-    values: array[float] = field(default_factory=lambda: array("d"))
+    values: GrowingNumbers = field(default_factory=GrowingNumbers)
     columns: int = 0
     empty: int = guards.MAX_POINTS  # cells at the end of each line
     blanks: array[int] = field(default_factory=lambda: array("q"))  # rows above each empty line
@@ -273,7 +274,7 @@ class _Table:
         """Take rows of numbers alone."""
         self.columns = rows.shape[1]
         self.empty = 0
-        self.values.frombytes(rows.tobytes())
+        self.values.extend(rows)
         self._check_count()
 
     def take_line(self, number: int, text: str) -> None:
@@ -315,21 +316,11 @@ class _Table:
             guards.check_claim(self.source, (self.rows, self.columns), 1, len(self.values))
 
     def finished(self) -> Array:
-        """The numbers (rows, columns)."""
+        """The numbers (rows, columns), which are here no more."""
         require(self.columns, self.source, "no line of numbers", "heights as text", _CHECK)
-        table = _poured(self.values).reshape(-1, self.columns)
+        table = self.values.poured().reshape(-1, self.columns)
         table = table[:, : max(self.columns - self.empty, 1)]
         return _with_gaps(table, self.blanks) if table.shape[1] == 1 and self.blanks else table
-
-
-def _poured(values: array[float]) -> Array:
-    """Numbers in an array of their own, moved piece by piece from the end: they are never held twice."""
-    poured = np.empty(len(values))
-    while values:
-        first = (len(values) - 1) // POURED * POURED
-        poured[first : len(values)] = values[first:]
-        del values[first:]
-    return poured
 
 
 def _with_gaps(table: Array, blanks: array[int]) -> Array:
