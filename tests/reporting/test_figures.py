@@ -216,6 +216,15 @@ def test_a_histogram_of_few_heights_is_in_its_panel():
     assert panel.y.high >= np.nanmax(steps.y)
 
 
+def test_the_normal_distribution_of_heights_ends_before_it_is_zero():
+    """Of heights with one far from all others it falls below all numbers, which no axis in decades holds."""
+    heights = np.append(np.random.default_rng(0).normal(3.0, 0.3, 5_000), 65.0)
+    panel = height_histogram({"heights": distribution(1e-6 * heights)}, (1e-6, "µm"), beside=False)
+    normal = panel.marks[1].y
+    assert np.isnan(normal).any()
+    assert np.nanmin(normal) > 1e-9 * np.nanmax(normal)
+
+
 @pytest.mark.parametrize(
     ("count", "left"), [(8, ""), (9, "8 of 9 measurements are shown; the CSV file has all.")]
 )

@@ -169,10 +169,19 @@ def test_a_line_that_bends_is_smooth_where_it_rises_by_more():
 
 @pytest.mark.parametrize("unit", [1e-9, 1e-6, 1e-3])
 def test_numbers_that_files_are_filled_with_are_known_in_any_unit(unit):
-    assert all(
-        belief._is_mark(unit * mark) for mark in (-999.0, -9999.0, 9999.0, -99999.0, -32768.0, 32767.0)
-    )
-    assert not any(belief._is_mark(unit * height) for height in (-998.0, 1000.0, 327.0, 0.0))
+    bits = (-32768.0, 32767.0, 65535.0, 2.0**31, 2.0**32 - 1.0)
+    assert all(belief._is_mark(unit * mark) for mark in (0.0, -999.0, -9999.0, 9999.0, -99999.0, *bits))
+    assert not any(belief._is_mark(unit * height) for height in (-998.0, 1000.0, 327.0, 65530.0))
+
+
+@pytest.mark.parametrize(("mark", "told"), [(0, "0 m"), (65535, "65.5 µm")])
+def test_points_without_a_height_in_unsigned_numbers_are_doubted(tmp_path, mark, told):
+    """3 µm in nm, which spread by 0.25 µm: zero is 12 of that away, the largest number of 16 bits 250."""
+    heights = np.random.default_rng(3).normal(3000.0, 250.0, (40, 50)).clip(2000.0, 4000.0).astype(np.uint16)
+    heights[4, 7:9] = mark
+    np.save(tmp_path / "a.npy", heights)
+    with pytest.warns(OutOfRangeWarning, match=f"2 points have the height {told}, .* write NaN there"):
+        read_surface(tmp_path / "a.npy", height_unit="nm", pixel="20 um")
 
 
 @pytest.mark.filterwarnings("error::asperity.errors.OutOfRangeWarning")

@@ -135,7 +135,7 @@ def test_a_plane_is_no_table_of_positions(read):
 @pytest.mark.parametrize("columns", [2, 3])
 def test_positions_in_an_array_are_told(tmp_path, columns):
     table = np.column_stack([X, *[Z] * (columns - 1)])
-    for name, array in (("a.npy", table), ("b.npy", table.T)):
+    for name, array in (("a.npy", table), ("b.npy", table.T), ("c.npy", table.astype(np.float32))):
         np.save(tmp_path / name, array)
         with pytest.raises(InputError, match="even positions beside heights; allowed: heights alone"):
             read_surface(tmp_path / name, height_unit="um", pixel="0.25 um")

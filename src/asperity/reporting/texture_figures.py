@@ -105,6 +105,7 @@ def height_histogram(
     z = np.linspace(edges[0], edges[-1], 200)
     normal = np.exp(-((z - mean) ** 2) / (2 * spread**2)) / (spread * np.sqrt(2 * np.pi))
     top = float(normal.max() * size)
+    normal[normal < 1e-8 * normal.max()] = np.nan  # far out it is zero, which no axis in decades holds
     highest = max(float(np.nanmax(each.y)) for each in steps)  # of rounded heights few bins hold all
     return Panel(
         Axis(f"height / {symbol} (out of the material →)"),

@@ -91,7 +91,7 @@ def only_one(names: list[str], source: str, what: str = "heights") -> str:
 def surfaces_of_array(array: NDArray[Any], hints: Hints, source: str) -> list[guards.Surface]:
     """Surfaces that an array without units holds, of which the hints tell the rest, see `read_npy`."""
     for turned in (array, array.T) if array.ndim == 2 and array.dtype.kind in "fiu" else ():
-        first, *others = turned[:MOST_TRIED].T
+        first, *others = turned[:MOST_TRIED].T.astype(np.float64)
         received = "even positions beside heights"
         remedy = "Save the heights alone, and give the pixel size."
         bare = not positions.are_even(first) or not others or all(map(positions.are_even, others))

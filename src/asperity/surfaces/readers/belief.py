@@ -46,8 +46,9 @@ APART = 300.0
 """Least distance of a height from all others, in their spread, that marks a missing point, or is wrong."""
 APART_OF_MARKS = 10.0
 """The same where its digits are those of a mark."""
-MARKS = {"9.99000", "9.99900", "9.99990", "9.99999", "3.27680", "3.27670"}
-"""Digits of -999, 9999, -32768 and their like, which files of heights are filled with."""
+MARKS = {"0.00000", "9.99000", "9.99900", "9.99990", "9.99999", "3.27680", "3.27670", "6.55350", "6.55040",
+         "2.14748", "4.29497"}  # fmt: skip
+"""Digits of 0, -999, 9999 and of the ends of 16 and 32 bits, which files of heights are filled with."""
 FEWEST_POINTS = 30
 """Points whose slopes prove nothing."""
 _NORMAL = 1.4826
@@ -273,7 +274,7 @@ def _of_places(spacing: float, factor: float) -> str:
 
 def told_length(metres: float, digits: int = 3) -> str:
     """Length with some digits in the unit that suits it: ``"0.25 µm"``."""
-    unit, name = next((each for each in _NAMED if abs(metres) >= 0.1 * each[0]), _NAMED[-1])
+    unit, name = next((each for each in _NAMED if abs(metres) >= 0.1 * each[0]), _NAMED[-1 if metres else 1])
     return f"{metres / unit:.{digits}g} {name}"
 
 
