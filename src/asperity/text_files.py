@@ -19,6 +19,9 @@ _NO_TEXT = {
     b"\xd0\xcf\x11\xe0": "a document of Office, as old workbooks of Excel are",
     b"%PDF": "a PDF",
     b"\x1f\x8b": "a compressed file, gzip",
+    b"BZh": "a compressed file, bzip2",
+    b"\xfd7zXZ\0": "a compressed file, xz",
+    b"7z\xbc\xaf": "a compressed file, 7z",
     b"\x89PNG": "a picture, PNG",
     b"\xff\xd8\xff": "a picture, JPEG",
 }
@@ -82,6 +85,14 @@ def read_text(
     return decoded(content, source, allowed, latin=latin)
 
 
+def refuse_no_table(content: bytes, source: str, allowed: str) -> None:
+    """Refuse what begins as files do that people take for tables, and says what it is."""
+    for begins, received in _NO_TEXT.items():
+        if content.startswith(begins):
+            remedy = "Unpack it." if "compressed" in received else "Export it as text, as CSV."
+            raise InputError(source, received, allowed, remedy)
+
+
 def decoded(content: bytes, source: str, allowed: str, *, latin: bool = False) -> str:
     """Decode the content of a text file, UTF-8 or UTF-16, without the mark.
 
@@ -89,9 +100,7 @@ def decoded(content: bytes, source: str, allowed: str, *, latin: bool = False) -
     message.
     """
     remedy = "Save the file as UTF-8."
-    for begins, received in _NO_TEXT.items():
-        if content.startswith(begins):
-            raise InputError(source, received, allowed, "Export it as text, as CSV.")
+    refuse_no_table(content, source, allowed)
     try:
         if content.startswith(_MARKS):
             return content.decode("utf-16")

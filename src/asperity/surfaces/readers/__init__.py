@@ -18,6 +18,7 @@ from asperity.surfaces.readers.formats import SurfaceFormat
 from asperity.surfaces.readers.headings import is_depth
 from asperity.surfaces.readers.hints import Hints, Length, advice, checked_hints, spell
 from asperity.surfaces.readers.libraries import CLASSIC, read_apart
+from asperity.text_files import refuse_no_table
 from asperity.written_numbers import count_of
 
 __all__ = ["SurfaceFormat", "read_all", "read_surface"]
@@ -27,6 +28,8 @@ Reader = Callable[[Path, Hints], list[guards.Surface]]
 READ_AS_TEXT = {"", ".txt", ".csv", ".tsv", ".dat", ".asc", ".xyz"}
 MAY_BE_BINARY = {"", ".dat", ".asc", ".xyz"}
 """Of these, those that instruments also give files of their own."""
+ARCHIVES = b"PK", b"\xd0\xcf"
+"""What files of instruments may begin with, as files of Office do."""
 OWN: dict[str, tuple[str, Reader]] = {
     ".npy": ("npy", arrays.read_npy),
     ".npz": ("npz", arrays.read_npz),
@@ -199,6 +202,8 @@ def _own(file: Path, head: bytes, extension: str) -> tuple[str, Reader]:
         require(is_text, file.name, f"a file that starts with {head[:8]!r}", f"a {named} file", remedy)
         return TEXT
     as_text = extension in READ_AS_TEXT and (extension not in MAY_BE_BINARY or text.holds_text(file))
+    if not as_text and not head.startswith(ARCHIVES):
+        refuse_no_table(head, file.name, "a file with heights")
     return TEXT if as_text else OTHER
 
 

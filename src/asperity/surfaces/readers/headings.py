@@ -73,10 +73,13 @@ _BESIDE = re.compile(
     r"\W*(?:(?:z|heights?)[ _.-]?)?(?:std(?:[ _.-]?dev)?|stdev|sd|sigma|err(?:or)?s?|uncertainty"
     r"|standard[ _](?:deviation|error)|standardabweichung|(?:mess)?unsicherheit|écart[ -]type|incertitude"
     r"|waviness|roughness|filtered|smoothed|fit(?:ted)?|residuals?"
-    r"|welligkeit|rauheit|gefiltert|ondulation|rugosité)(?![a-z])",
+    r"|welligkeit|rauheit|gefiltert|ondulation|rugosité"
+    r"|quality|status|flags?|confidence|intensity|temp(?:erature)?|speed|time|date"
+    r"|qualität|qualitaet|güte|intensität|temperatur|geschwindigkeit|zeit|datum|qualité|température|vitesse|temps"
+    r")(?![a-z])",
     re.IGNORECASE,
 )
-"""Titles of what stands beside heights and is none: how sure they are, and parts of them."""
+"""Titles of what stands beside heights and is none: how sure they are, parts of them, circumstances."""
 MOST_TITLE = 200
 """Characters of a title."""
 MOST_WORDS = 4
@@ -175,7 +178,7 @@ def columns_of_heights(table: Array, titles: list[Title]) -> tuple[Array, list[T
     if len(kept) > 2:
         kept = [place for place in kept if not _COUNT.match(names[place]) or not _counts(table[:, place])]
     plain = [place for place in kept if not _BESIDE.match(names[place])]
-    if any(_Z.match(names[place]) for place in plain):
+    if any(_Z.match(names[place]) or _is_line(titles[place]) for place in plain):
         kept = plain
     found = [[place for place in kept if role.match(names[place])] for role in (_X, _Y, _Z)]
     if len(found[0]) == len(found[2]) == 1 and len(found[1]) < 2:
@@ -184,6 +187,12 @@ def columns_of_heights(table: Array, titles: list[Title]) -> tuple[Array, list[T
         if not any(_LENGTH.fullmatch(titles[place].unit) for place in others):
             kept = [*found[0], *found[1], *valid, *found[2]]
     return (table[:, kept], [titles[place] for place in kept]) if kept else (table, titles)
+
+
+def _is_line(title: Title) -> bool:
+    """Whether a column is in a unit of length, and no place."""
+    is_place = _X.match(title.name) or _Y.match(title.name)
+    return bool(_LENGTH.fullmatch(title.unit)) and not is_place
 
 
 def depth_named(lines: Sequence[str], titles: list[Title], delimiter: str | None, columns: int) -> str:
