@@ -427,10 +427,15 @@ def test_a_bearing_is_made_finer_and_asked_what_helps_by_command(monkeypatch):
     monkeypatch.setattr(running, "study", lambda plan, progress=None: study(plan, executor=HERE))
     Path("bearing.toml").write_text(as_case(SMALL).to_toml())
     said = call("run", "bearing.toml", "--what-helps", "--converge", "-o", "out", "--json", "--quiet").stdout
-    assert json.loads(said)["exit_code"] == 0
+    told = json.loads(said)["what_helps"]
     tree = asperity.open_result("out")
     effect = tree["effects"].to_dataset()["effect"].sel(variant="half as wavy")
     assert float(effect.sel(judged="300 to 1800 Hz")) == pytest.approx(20.0 * np.log10(0.5), abs=0.01)
+    (change,) = told["changes"]
+    assert change["change"] == "half as wavy"
+    assert change["effect"]["300 to 1800 Hz"] == pytest.approx(float(effect.sel(judged="300 to 1800 Hz")))
+    assert change["error"]["300 to 1800 Hz"] is None
+    assert told["level"].keys() == change["effect"].keys()
     assert {"time step", "run-in"} <= set(tree["convergence"].to_dataset()["setting"].values.tolist())
     page = Path("out/report.html").read_text()
     assert "What helps?" in page

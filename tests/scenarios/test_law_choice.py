@@ -147,6 +147,7 @@ def test_off_the_map_it_says_so():
     assert areal.high / areal.low > 1.5 * near.high / near.low
     assert choice.off_map
     assert dict(choice.rows())["place on the map"].endswith("so that the expected errors are guesses")
+    assert dict(choice.rows())["expected errors, dB"].startswith("guesses: ")
     assert choice.sentence("areal").startswith("A guess, off the map")
     assert choice.sentence("own-law") is None
 

@@ -96,12 +96,13 @@ def run_case(
         remark("Nothing to do: this case has been run, with the same files and program (--again runs it).")
     if verdict := tree.attrs.get("verdict", ""):
         say(verdict)
+    effects = None
     if what_helps:
         from asperity.cli.studying import print_effects
-        from asperity.scenes.figures.effects import what_helps_table
+        from asperity.scenes.figures.effects import effects_of_run, effects_table
 
-        if (effects := what_helps_table(tree)) is not None:
-            print_effects(effects)
+        if (effects := effects_of_run(tree)) is not None:
+            print_effects(effects_table(effects))
     written = {"results": directory / RESULT} | ({"report": directory / PAGE} if report else {})
     say_files(written)
     return {
@@ -110,6 +111,7 @@ def run_case(
         "computed": computed,
         "verdict": verdict,
         "laws": law_summaries(tree),
+        "what_helps": effects and effects.document,
         "warnings": warnings_of(tree),
         "files": written,
     }

@@ -194,7 +194,8 @@ class LawChoice:
     def rows(self) -> Iterator[tuple[str, str]]:
         """Say which law to take, the errors to expect, and where the case lies: names and values."""
         yield "law to take", self._advice()
-        yield "expected errors, dB", f"{', '.join(map(str, self.expected.values()))}; {MEANING}"
+        errors = ", ".join(map(str, self.expected.values()))
+        yield "expected errors, dB", f"{'guesses: ' * self.off_map}{errors}; {MEANING}"
         place = self.place
         near = self.nearest
         off = ": off the map, so that the expected errors are guesses" if self.off_map else ""

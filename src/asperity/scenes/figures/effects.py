@@ -1,6 +1,7 @@
 """What helps: what named changes of a case do to what radiates, as a table and in words."""
 
 import re
+from typing import Any
 
 import numpy as np
 import xarray
@@ -96,6 +97,25 @@ class Effects:
             names[0] if len(names) < 2 and names else f"{' and '.join(names)}, about equal" if names else ""
         )
 
+    @property
+    def document(self) -> dict[str, Any]:
+        """What programs are told: levels as the case is, and of each change the differences, dB."""
+        words = self.in_words
+        changes = [
+            {
+                "change": name,
+                "effect": dict(zip(self.parts, effect, strict=True)),
+                "error": dict(zip(self.parts, error, strict=True)),
+                "left_out": why or None,
+                "in_words": words[name],
+            }
+            for name, why, effect, error in zip(
+                self.variants, self.left_out, self.effect, self.error, strict=True
+            )
+        ]
+        level = dict(zip(self.parts, self.level, strict=True))
+        return {"law": self.law, "seeds": self.seeds, "units": self.units, "level": level, "changes": changes}
+
 
 def said_once(reasons: str) -> str:
     """Reasons of several keys, each once: what two keys lack for one reason is told as one."""
@@ -131,15 +151,20 @@ def _cell(effect: float, error: float) -> tables.Cell:
 # --- in the report of a run
 
 
-def _of_run(tree: xarray.DataTree) -> Effects:
-    return Effects(tree[schema.EFFECT.group].to_dataset())
+def effects_of_run(tree: xarray.DataTree) -> Effects | None:
+    """Effects that a run holds, if it was asked."""
+    return (
+        Effects(tree[schema.EFFECT.group].to_dataset()) if data.present(tree, schema.EFFECT_LEVEL) else None
+    )
 
 
 def what_helps_table(tree: xarray.DataTree) -> tables.ReportTable | None:
     """What each change does, if it was asked."""
-    return effects_table(_of_run(tree)) if data.present(tree, schema.EFFECT_LEVEL) else None
+    effects = effects_of_run(tree)
+    return None if effects is None else effects_table(effects)
 
 
 def what_helps_answers(tree: xarray.DataTree) -> headline.Answers | None:
     """What helps most, if it was asked."""
-    return headline.Answers(more=_of_run(tree).best) if data.present(tree, schema.EFFECT) else None
+    effects = effects_of_run(tree)
+    return None if effects is None else headline.Answers(more=effects.best)
