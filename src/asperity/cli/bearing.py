@@ -48,8 +48,8 @@ MEANINGS = {
 
 
 def show_bearing(
-    source: str | None,
-    signals: Sequence[Path],
+    bearing: str | None,
+    signal: Sequence[Path],
     more: Sequence[Path],
     picture: Path | None,
     *,
@@ -72,33 +72,33 @@ def show_bearing(
     options["lubricant"] = oil or None
     if listed:
         return _listed()
-    if source is None:
+    if bearing is None:
         raise InputError("bearing", "none", "a NAME or a FILE", named_bearings())
-    if more and not signals:
-        received = " and ".join([source, *map(str, more)])
+    if more and not signal:
+        received = " and ".join([bearing, *map(str, more)])
         raise InputError("bearing", received, "one", "Files of signals follow --signal.")
     for_table = {"cage-angle": cage_angle, "load-direction": load_direction}
     for_table["damping"] = options["contact_damping"]
-    looks_elsewhere = bool(signals) or picture is not None
+    looks_elsewhere = bool(signal) or picture is not None
     _refuse_mixed("--table", table, for_table, looks_elsewhere or limits is not None)
     _refuse_mixed("--limits", limits, {"outer-mass": outer_mass}, looks_elsewhere)
-    if oil and (signals or any(each is not None for each in (table, limits, sheet))):
+    if oil and (signal or any(each is not None for each in (table, limits, sheet))):
         raise InputError("--oil", "a signal, table, sheet or limits with it", "load and speed alone")
     if table is not None:
-        told = write_table(source, options, table, cage_angle, load_direction)
-        return {"bearing": source, **dict.fromkeys(TOLD), **told}
+        told = write_table(bearing, options, table, cage_angle, load_direction)
+        return {"bearing": bearing, **dict.fromkeys(TOLD), **told}
     _refuse_mixed("--sheet", sheet, {}, looks_elsewhere or limits is not None or table is not None)
     if sheet is not None:
-        return {"bearing": source, **dict.fromkeys(TOLD), **_write_sheet(source, options, sheet)}
+        return {"bearing": bearing, **dict.fromkeys(TOLD), **_write_sheet(bearing, options, sheet)}
     if limits is not None:
-        waves = say_tolerances(source, options, limits, outer_mass)
-        return {"bearing": source, **dict.fromkeys(TOLD), "tolerances": waves}
-    keys = read_bearing(source, options)
-    name = keys.name or source
+        waves = say_tolerances(bearing, options, limits, outer_mass)
+        return {"bearing": bearing, **dict.fromkeys(TOLD), "tolerances": waves}
+    keys = read_bearing(bearing, options)
+    name = keys.name or bearing
     say(f"{name}: {_in_words(keys.bearing)}")
     if keys.name:
         say(PRINTED.get(keys.name) or LISTED[keys.name].sentence)
-    told = heard(keys, (*signals, *more), picture, **choices) if signals else _carried(keys, picture)
+    told = heard(keys, (*signal, *more), picture, **choices) if signal else _carried(keys, picture)
     if picture is not None:
         told["files"] = {"picture": picture}
     return {"bearing": name, **dict.fromkeys(TOLD), **told}

@@ -1,13 +1,12 @@
 """Commands to begin with: an example, a case file, measured files, wheels, bearings, creep."""
 
 from pathlib import Path
-from typing import Any
 
 import click
 
 from asperity.cli import commands
 from asperity.cli.commands import PATH, output
-from asperity.cli.program import Document, commands_of
+from asperity.cli.program import commands_of
 from asperity.terminal import say
 
 _begin = commands_of("Begin")
@@ -68,10 +67,14 @@ def new(kind: str, laws: tuple[str, ...]) -> None:
     say(others[kind]() if kind in others else template(kind, laws), lines=True)
 
 
-@_begin("What is in a measured file: size, statistics, spectrum, picture.", params=commands.SURFACE)
+@_begin(
+    "What is in a measured file: size, statistics, spectrum, picture.",
+    params=commands.SURFACE,
+    does="surface.show_surface",
+)
 @click.argument("file", type=PATH)
 @commands.picture("The picture. [default: NAME-surface.png here, with array and index in its name]")
-def surface(file: Path, picture: Path | None, **choices: Any) -> Document:
+def surface() -> None:
     """Say what is in a measured FILE: size, spacing, missing points, statistics, and a picture.
 
     The picture shows heights, their distribution and their power spectral density along x and along y. Std is
@@ -90,17 +93,16 @@ def surface(file: Path, picture: Path | None, **choices: Any) -> Document:
     # filtered, kept
     asperity surface beam.x3p --form quartic --shortest '8 um' --store recipe.toml
     """
-    from asperity.cli.surface import show_surface
-
-    return show_surface(file, picture, **choices)
 
 
-@_begin("Modes of a wheel by the drawing of its section.", document=False, long_work=True)
+@_begin(
+    "Modes of a wheel by the drawing of its section.", document=False, long_work=True, does="wheel.show_wheel"
+)
 @click.argument("section")
 @click.option("--highest", metavar="FREQUENCY", help="Upper end of the spectra. [default: 5 kHz]")
 @commands.picture("Draw the section to a file, .svg, .pdf or .png.", "--picture")
 @output("Table of the modes, which wheel.modes of a case names.", "table", "FILE")
-def wheel(section: str, highest: str | None, table: Path | None, picture: Path | None) -> None:
+def wheel() -> None:
     """Find the modes of a wheel by its SECTION: a named one, an outline (CSV), or a case with a drawn wheel.
 
     An outline is a closed polygon in a file with the columns 'radius (mm), axial place (mm)', the latter from
@@ -115,26 +117,18 @@ def wheel(section: str, highest: str | None, table: Path | None, picture: Path |
     # of a case, with its dimensions and its damping
     asperity wheel case.toml --highest '8 kHz'
     """
-    from asperity.cli.wheel import show_wheel
-
-    show_wheel(section, highest, table, picture)
 
 
 @_begin(
     "What a bearing carries, its tones, and what its signal says.",
     params=commands.BEARING,
     long_work=True,
+    does="bearing.show_bearing",
 )
 @click.argument("bearing", metavar="NAME|FILE", required=False)
 @click.argument("more", type=PATH, nargs=-1, metavar="[SIGNAL]...")
 @commands.picture("Picture of the load zone, or of the envelope spectrum.")
-def bearing(
-    bearing: str | None,
-    more: tuple[Path, ...],
-    picture: Path | None,
-    signal: tuple[Path, ...],
-    **choices: Any,
-) -> Document:
+def bearing() -> None:
     """Say how a bearing carries a load at rest, and its tones; or which of them a signal holds.
 
     A bearing has a NAME, or its dimensions stand in a FILE (TOML): balls, ball_diameter, pitch_diameter,
@@ -170,9 +164,6 @@ def bearing(
     # several files of one measurement: each one, and all together
     asperity bearing 6205 --speed '1797 1/min' --signal run-1.wav run-2.wav run-3.wav
     """
-    from asperity.cli.bearing import show_bearing
-
-    return show_bearing(bearing, signal, more, picture, **choices)
 
 
 @_begin(
@@ -180,10 +171,11 @@ def bearing(
     params=commands.CREEP,
     document=False,
     long_work=True,
+    does="creep.show_creep",
 )
 @click.argument("case", type=PATH)
 @commands.picture("Draw it to a file, .svg, .pdf or .png.")
-def creep(case: Path, picture: Path | None, **choices: Any) -> None:
+def creep() -> None:
     """Find the creep force of what rolls in a CASE under its working load, in steady rolling.
 
     The smooth contact and the samples of the case, with Kalker's linear theory and FASTSIM beside them.
@@ -197,6 +189,3 @@ def creep(case: Path, picture: Path | None, **choices: Any) -> None:
     # what roughness does to tangential stiffness and creep, at which load
     asperity creep case.toml --states --points 6 -o states.svg
     """
-    from asperity.cli.creep import show_creep
-
-    show_creep(case, picture=picture, **choices)

@@ -9,6 +9,7 @@ import traceback
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
+from functools import partial
 from itertools import groupby
 from pathlib import Path
 from typing import Any
@@ -70,6 +71,9 @@ class Command(click.Command):
         Whether it has a form for programs, with ``--json``: it then returns what stands in the document.
     long_work : bool
         Whether it can be told to say less or more of what it does.
+    does : str
+        Function of `asperity.cli` that does it, by its module and name, which takes arguments and options by
+        their names; it is imported when it runs. Without one the command does what stands below its help.
     """
 
     def __init__(
@@ -78,10 +82,13 @@ class Command(click.Command):
         section: str = "More",
         document: bool = True,
         long_work: bool = False,
+        does: str = "",
         **settings: Any,
     ) -> None:
         super().__init__(*arguments, **settings)
         self.section = section
+        if does:
+            self.callback = partial(_do, f"asperity.cli.{does}")
         text = inspect.cleandoc(self.help or "").replace("KINDS", ", ".join(kinds()))
         text = text.replace("KIND", next(iter(kinds())))
         self.help, _, self.examples = text.partition("\n\nExamples\n--------\n")
@@ -118,6 +125,13 @@ class Command(click.Command):
         """Write command lines that can be copied, each under what it does."""
         if self.examples:
             formatter.write(f"\nExamples:\n{textwrap.indent(self.examples, '  ')}\n")
+
+
+def _do(function: str, **given: Any) -> Any:
+    """What a function makes of arguments and options, which is imported now."""
+    from asperity.case.any_case import function_named
+
+    return function_named(function)(**given)
 
 
 def _manner_option(*names: str, help: str) -> click.Option:
@@ -258,7 +272,15 @@ def _drawable(context: click.Context, option: click.Parameter, path: Path | None
 
 
 run_argument = click.argument("run", type=PATH)
-run_folder = output("Folder of the results. [default: runs/NAME]")
+
+
+def _run_folder(context: click.Context, option: click.Parameter, folder: Path | None) -> Path:
+    """A folder of one's choice, or by default one in ``runs`` with the name of what is computed."""
+    computed = next(each for each in context.command.params if isinstance(each, click.Argument))
+    return folder or Path("runs") / context.params[str(computed.name)].stem
+
+
+run_folder = output("Folder of the results. [default: runs/NAME]", callback=_run_folder)
 again = click.option(
     "--again", is_flag=True, help="Compute even what this program has computed already from the same files."
 )

@@ -19,7 +19,7 @@ _compute = commands_of("Compute")
 @commands.device
 @click.option("--keys", is_flag=True, help="Show every key with its value, those at their defaults too.")
 @commands.overwrite("the run of another case")
-def check(case: Path, directory: Path | None, keys: bool, overwrite: bool) -> Document:
+def check(case: Path, directory: Path, keys: bool, overwrite: bool) -> Document:
     """Check a CASE: say what is doubtful, what will be computed, and how long that takes.
 
     Refuses whatever 'asperity run' would refuse, tries small pieces of the work to expect its time, and says
@@ -38,10 +38,9 @@ def check(case: Path, directory: Path | None, keys: bool, overwrite: bool) -> Do
     from asperity.cli.running import refuse_full, refuse_other, show_plan
 
     loaded = read_case(case)
-    target = directory or Path("runs") / case.stem
-    refuse_full(loaded, target)
+    refuse_full(loaded, directory)
     if not overwrite:
-        refuse_other(loaded, target)
+        refuse_other(loaded, directory)
     return show_plan(loaded, str(case), every_key=keys)
 
 
@@ -54,7 +53,7 @@ def check(case: Path, directory: Path | None, keys: bool, overwrite: bool) -> Do
 @commands.device
 @commands.again
 @commands.overwrite("the run of another case")
-def run(case: Path, directory: Path | None, **choices: bool) -> Document:
+def run(case: Path, directory: Path, **choices: bool) -> Document:
     """Compute a CASE: writes run.nc, report.html and the CSV of every figure.
 
     Finished pieces of work are kept: a run that was interrupted goes on where it was. One that is finished
@@ -74,7 +73,7 @@ def run(case: Path, directory: Path | None, **choices: bool) -> Document:
     from asperity.case.cases import read_case
     from asperity.cli.running import run_case
 
-    return run_case(read_case(case), directory or Path("runs") / case.stem, source=str(case), **choices)
+    return run_case(read_case(case), directory, source=str(case), **choices)
 
 
 @_compute(
@@ -92,7 +91,7 @@ def study(
     vary: tuple[str, ...],
     draw: tuple[str, ...],
     what_helps: bool,
-    directory: Path | None,
+    directory: Path,
     **choices: Any,
 ) -> Document:
     """Compute a case for every combination of the values of some keys, into one table.
@@ -125,17 +124,20 @@ def study(
     """
     from asperity.cli.studying import defined, run_study
 
-    definition = defined(study, vary, draw, helps=what_helps)
-    return run_study(definition, directory or Path("runs") / study.stem, **choices)
+    return run_study(defined(study, vary, draw, helps=what_helps), directory, **choices)
 
 
-@_compute("Find the texture that rolls quietest within bounds.", long_work=True)
+@_compute(
+    "Find the texture that rolls quietest within bounds.",
+    long_work=True,
+    does="optimising.run_optimisation",
+)
 @click.argument("optimisation", type=PATH)
 @commands.run_folder
 @commands.report
 @commands.overwrite("another texture")
 @commands.device
-def optimise(optimisation: Path, directory: Path | None, **choices: bool) -> Document:
+def optimise() -> None:
     """Find the texture that rolls quietest within bounds, or the roughest that keeps a level.
 
     Of a ball bearing, the roughest waves that keep velocities under limits. Searches with a cheap law and
@@ -146,9 +148,6 @@ def optimise(optimisation: Path, directory: Path | None, **choices: bool) -> Doc
     # of a file that 'asperity new optimisation' began
     asperity optimise aim.toml -o quiet
     """
-    from asperity.cli.optimising import run_optimisation
-
-    return run_optimisation(optimisation, directory or Path("runs") / optimisation.stem, **choices)
 
 
 @_compute("Fit keys of a case to what was measured.", params=commands.FIT, long_work=True)

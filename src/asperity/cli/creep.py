@@ -43,7 +43,7 @@ Told = tuple[str, dict[str, Array], Chart]
 
 
 def show_creep(
-    source: Path,
+    case: Path,
     direction: str | None,
     friction: float | None,
     points: int | None,
@@ -60,11 +60,11 @@ def show_creep(
     allowed = f"a whole number from 2 to {MOST_POINTS}"
     count = (6 if states else 16) if points is None else points
     whole("--points", count, allowed, at_least=2, at_most=MOST_POINTS)
-    case = of_bodies(read_case(source), "creep")
-    prepared = cast(PreparedCase, prepared_case(case, str(source)))
+    source = str(case)
+    prepared = cast(PreparedCase, prepared_case(of_bodies(read_case(case), "creep"), source))
     with progress_bar() as progress:
         if states:
-            found = _told_states(creep.states_of(prepared, count, progress), str(source))
+            found = _told_states(creep.states_of(prepared, count, progress), source)
         else:
             law = creep.friction_of(prepared.case) if friction is None else Friction(friction)
             rolling, smooth = creep.smooth_with_friction(prepared, law)
@@ -72,7 +72,7 @@ def show_creep(
                 rolling, smooth, prepared.shape.semi_axes, direction or "longitudinal", count=count,
                 samples=creep.rough_strips(prepared), speed=prepared.case.speed, progress=progress,
             )  # fmt: skip
-            found = _told_curve(curve, smooth.force, str(source))
+            found = _told_curve(curve, smooth.force, source)
     title, columns, chart = found
     if table is not None:
         write_columns(columns, table)

@@ -49,13 +49,18 @@ def serve(port: int, directory: Path) -> None:
     say("Ended; runs and surfaces are kept.", err=True)
 
 
-@_look("Write the report of a run again, or a summary of one page.", name="report", document=False)
+@_look(
+    "Write the report of a run again, or a summary of one page.",
+    name="report",
+    document=False,
+    does="results.report_again",
+)
 @commands.run_argument
 @click.option(
     "--summary", is_flag=True, help="Result, three figures, validity and origin on one sheet of A4."
 )
 @output("Folder of the report. [default: that of the run]")
-def report_again(run: Path, summary: bool, directory: Path | None) -> None:
+def report_again() -> None:
     """Write the report of a RUN (run.nc, or its folder) again, or a summary of it on one sheet of paper.
 
     Examples
@@ -65,12 +70,9 @@ def report_again(run: Path, summary: bool, directory: Path | None) -> None:
     # the page and its CSVs, from what run.nc holds
     asperity report runs/case -o page
     """
-    from asperity.cli.results import report_again as write_report
-
-    write_report(run, directory, summary=summary)
 
 
-@_look("Draw the figures of a run to files, for a paper.", document=False)
+@_look("Draw the figures of a run to files, for a paper.", document=False, does="results.draw_figures")
 @commands.run_argument
 @click.argument("names", nargs=-1, metavar="[NAME]...")
 @click.option(
@@ -81,7 +83,7 @@ def report_again(run: Path, summary: bool, directory: Path | None) -> None:
     help="Of the files; words stay words in SVG and PDF.",
 )
 @output("Folder of the figures. [default: figures, beside the run]")
-def figures(run: Path, names: tuple[str, ...], format: str, directory: Path | None) -> None:
+def figures() -> None:
     """Draw the figures of a RUN (run.nc, or its folder) to files: all of them, or those with a NAME.
 
     A name is that of a CSV file, which holds the numbers of the figure, or its title in the report.
@@ -95,19 +97,20 @@ def figures(run: Path, names: tuple[str, ...], format: str, directory: Path | No
     # by its title, or the beginning of it
     asperity figures runs/case 'contact force levels' -o paper
     """
-    from asperity.cli.results import draw_figures
-
-    draw_figures(run, directory, format, names)
 
 
-@_look("What differs between runs: cases, levels, force, stiffness.", document=False)
+@_look(
+    "What differs between runs: cases, levels, force, stiffness.",
+    document=False,
+    does="results.compare_runs",
+)
 @click.argument("runs", nargs=-1, type=PATH, required=True)
 @output(
     "Folder of comparison.html and comparison.csv, or the page itself, ….html.",
     default=Path("comparison"),
     show_default=True,
 )
-def compare(runs: tuple[Path, ...], directory: Path) -> None:
+def compare() -> None:
     """Compare RUNS (run.nc, or their folders) with the first of them: one page and one table.
 
     What differs in the cases; levels and their differences in each one-third octave and in dB(A); force, loss
@@ -120,15 +123,12 @@ def compare(runs: tuple[Path, ...], directory: Path) -> None:
     # three runs, into a folder of your choice
     asperity compare runs/a runs/b runs/c -o what-if
     """
-    from asperity.cli.results import compare_runs
-
-    compare_runs(runs, directory)
 
 
-@_look("Write what a run sounds like, as WAV files.", params=commands.LISTEN)
+@_look("Write what a run sounds like, as WAV files.", params=commands.LISTEN, does="results.write_sounds")
 @commands.run_argument
 @output("Folder of the sounds. [default: sounds, beside the run]")
-def listen(run: Path, what: str | None, matched: bool, directory: Path | None) -> Document:
+def listen() -> None:
     """Write what a RUN sounds like (run.nc, or its folder): a WAV file for each law and place, 48 kHz.
 
     Examples
@@ -138,15 +138,16 @@ def listen(run: Path, what: str | None, matched: bool, directory: Path | None) -
     # equally loud, so that only the sound differs
     asperity listen runs/case --matched
     """
-    from asperity.cli.results import write_sounds
-
-    return write_sounds(run, directory, what, matched=matched)
 
 
-@_look("Write signals of a run as programs of measurement read them.", params=commands.WRITTEN)
+@_look(
+    "Write signals of a run as programs of measurement read them.",
+    params=commands.WRITTEN,
+    does="results.write_measured",
+)
 @commands.run_argument
 @output("Folder of the signals. [default: signals, beside the run]")
-def signals(run: Path, what: str | None, format: str, directory: Path | None) -> Document:
+def signals() -> None:
     """Write force, acceleration, pressure, speed and spectra of a RUN (run.nc, or its folder) to files.
 
     Examples
@@ -156,9 +157,6 @@ def signals(run: Path, what: str | None, format: str, directory: Path | None) ->
     # the accelerometer as WAV of 24 bits; the value of full scale stands in the file and in signals.csv
     asperity signals runs/case --format wav --what ring_acceleration
     """
-    from asperity.cli.results import write_measured
-
-    return write_measured(run, directory, what, format)
 
 
 @_look("Say what to cite for a run.")
@@ -183,9 +181,9 @@ def cite(run: Path) -> Document:
 # --- around it
 
 
-@_around("Show or delete what is kept between runs.")
+@_around("Show or delete what is kept between runs.", does="results.show_cache")
 @click.option("--clear", is_flag=True, help="Delete what is kept; it is computed again when it is needed.")
-def cache(clear: bool) -> Document:
+def cache() -> None:
     """Show what is kept: finished pieces of work, compiled functions, and what interrupted runs left.
 
     Work is kept in $ASPERITY_CACHE, by default in the cache folder of the system.
@@ -197,9 +195,6 @@ def cache(clear: bool) -> Document:
     # delete it; it is computed again when it is needed
     asperity cache --clear
     """
-    from asperity.cli.results import show_cache
-
-    return show_cache(clear=clear)
 
 
 @_around("Let the shell complete commands, files, kinds and laws.", document=False)

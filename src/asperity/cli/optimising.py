@@ -49,13 +49,13 @@ class ToldOptimisation:
 
 
 def run_optimisation(
-    path: Path, directory: Path, *, report: bool = True, overwrite: bool = False
+    optimisation: Path, directory: Path, *, report: bool = True, overwrite: bool = False
 ) -> dict[str, Any]:
     """Find a texture and write it to a folder, with the runs before and after it.
 
     `overwrite` says whether a texture in the folder may be replaced, and `report` whether the runs get pages.
     """
-    case, aim = load_aim(path)
+    case, aim = load_aim(optimisation)
     written = {what: directory / name for what, name in FILES.items()}
     require_writable(directory)
     asked = json.dumps([content(each, file_digest) for each in (case, aim)])

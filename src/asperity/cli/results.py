@@ -29,14 +29,14 @@ _KERNEL = re.compile(r"asperity[\w.<>]+-[0-9a-f]{24}")
 """Name of a compiled function that is kept."""
 
 
-def _folder_beside(run: Path, folder: Path | None, name: str = "") -> Path:
+def _folder_beside(run: Path, chosen: Path | None, name: str = "") -> Path:
     """A folder of one's choice, or by default one of this name in that of a run."""
-    return folder or (run if run.is_dir() else run.parent) / name
+    return chosen or (run if run.is_dir() else run.parent) / name
 
 
-def report_again(run: Path, folder: Path | None, *, summary: bool) -> None:
+def report_again(run: Path, directory: Path | None, *, summary: bool) -> None:
     """Write the page of a run, or its summary alone; by default beside it."""
-    target = _folder_beside(run, folder)
+    target = _folder_beside(run, directory)
     require_writable(target, "report")
     tree = read_result(run)
     what, write = ("summary", write_summary) if summary else ("report", write_page)
@@ -45,9 +45,9 @@ def report_again(run: Path, folder: Path | None, *, summary: bool) -> None:
     say_files({what: target / name})
 
 
-def draw_figures(run: Path, folder: Path | None, format: str, names: Sequence[str]) -> None:
+def draw_figures(run: Path, directory: Path | None, format: str, names: Sequence[str]) -> None:
     """Draw figures of a run, by default into ``figures`` beside it, all or none."""
-    target = _folder_beside(run, folder, "figures")
+    target = _folder_beside(run, directory, "figures")
     require_writable(target, "figures")
     tree = read_result(run)
     drawn = chosen_figures(figures_of(tree), names)
@@ -56,9 +56,9 @@ def draw_figures(run: Path, folder: Path | None, format: str, names: Sequence[st
     say(f"Figures: {target.absolute()}, {', '.join(path.name for path in files) or 'none'}")
 
 
-def write_sounds(run: Path, folder: Path | None, what: str | None, *, matched: bool) -> dict[str, Any]:
+def write_sounds(run: Path, directory: Path | None, what: str | None, *, matched: bool) -> dict[str, Any]:
     """Write the sounds of a run, by default into ``sounds`` beside it."""
-    target = _folder_beside(run, folder, "sounds")
+    target = _folder_beside(run, directory, "sounds")
     files = sound.listen(read_result(run), target, what=what, matched=matched)
     scale = "all as loud as each other" if matched else "all on one scale"
     say(
@@ -68,9 +68,9 @@ def write_sounds(run: Path, folder: Path | None, what: str | None, *, matched: b
     return {"run": run.resolve(), "matched": matched, "files": {path.name: path for path in files}}
 
 
-def write_measured(run: Path, folder: Path | None, what: str | None, format: str) -> dict[str, Any]:
+def write_measured(run: Path, directory: Path | None, what: str | None, format: str) -> dict[str, Any]:
     """Write signals of a run, by default into ``signals`` beside it."""
-    target = _folder_beside(run, folder, "signals")
+    target = _folder_beside(run, directory, "signals")
     files = signal_files.write_signals(read_result(run), target, format=format, what=what)
     count = count_of(len(files), "file")
     table = signal_files.TABLE
@@ -78,11 +78,11 @@ def write_measured(run: Path, folder: Path | None, what: str | None, format: str
     return {"run": run.resolve(), "files": {path.name: path for path in files}}
 
 
-def compare_runs(paths: Sequence[Path], target: Path) -> None:
+def compare_runs(runs: Sequence[Path], directory: Path) -> None:
     """Compare runs into a page and a table, and say in short what differs."""
-    folder = target.parent if target.suffix.lower() == ".html" else target
+    folder = directory.parent if directory.suffix.lower() == ".html" else directory
     require_writable(folder, "comparison")
-    found = comparison_of(paths)
+    found = comparison_of(runs)
     table = found.table
     names = found.names
     keys = [[i["key"], *("–" if v is None else str(v) for v in i["values"])] for i in found.keys]
@@ -97,7 +97,7 @@ def compare_runs(paths: Sequence[Path], target: Path) -> None:
     ]
     say_table(f"A-weighted, less {names[0]}, in dB", ["run", "law", *found.levels.values()], rows, width=120)
     say(summary(found))
-    page, numbers = write_comparison(found, target)
+    page, numbers = write_comparison(found, directory)
     say_files({"page": page, "table": numbers})
 
 
