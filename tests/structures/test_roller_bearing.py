@@ -1,6 +1,8 @@
 """A roller bearing at rest: printed load distributions, closed forms, another solution; what turns."""
 
 import math
+import re
+import warnings
 
 import numpy as np
 import pytest
@@ -426,6 +428,24 @@ test_loads_that_cannot_be = refusals(
 def test_the_name_of_a_bearing_is_known():
     with pytest.raises(Exception, match=r"bearing: received 'NU209'; allowed: one of .*NU205"):
         RollerBearing.named("NU209")
+
+
+@pytest.mark.filterwarnings(OF_ENDS)
+def test_a_fit_that_presses_rollers_beyond_what_lasts_is_doubted_with_the_cause():
+    """Rings that overlap by 20 µm press a roller with 35948 L^(8/9) δ^(10/9), N and mm, of ISO/TS 16281."""
+    tight = NU205.with_(
+        clearance=-40e-6, crowning="cylindrical", material=ISO_STEEL, roller_material=ISO_STEEL
+    )
+    with pytest.warns(OutOfRangeWarning, match="presses every roller with .* fatigues .* looser fit") as told:
+        tight.loaded(radial=100.0)
+    squeezed = float(re.search(r"([\d.]+) N, without any load", str(told[0].message))[1])
+    assert squeezed == pytest.approx(35948.0 * 7.8 ** (8 / 9) * 0.02 ** (10 / 9), rel=2e-3)
+    crushed = NU205.with_(clearance=-300e-6)
+    cause = r"A clearance of -300 µm alone presses each roller .* a looser fit"
+    with pytest.warns(OutOfRangeWarning), pytest.raises(InputError, match=cause):
+        crushed.loaded(radial=100.0)
+    with warnings.catch_warnings(action="error"):
+        NU205.with_(clearance=-20e-6).loaded(radial=100.0)
 
 
 def test_doubts_are_told():

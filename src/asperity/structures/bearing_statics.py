@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
@@ -16,6 +16,9 @@ from asperity.structures.ball_bearing import FATIGUE_PRESSURE, STATIC_PRESSURE, 
 from asperity.structures.least_energy import TOLERANCE, least_energy
 from asperity.structures.rolling_bearing import FASTEST, RollingBearing
 from asperity.written_numbers import rounded
+
+if TYPE_CHECKING:
+    from asperity.structures.roller_bearing import RollerBearing
 
 LEAST = 1e-6
 """N, of what holds a ball between arches: less is none."""
@@ -403,7 +406,7 @@ def _solved(bearing: BallBearing, radial: float, axial: float, speed: float, ang
 def _doubt(found: LoadedBearing) -> None:
     """Refuse or warn of contacts that fill their grooves, of dents, of balls that leave the inner ring."""
     of = found.bearing
-    _doubt_fit(of)
+    doubt_fit(of)
     alone = _pressed_unloaded(found)
     sides = zip(("inner", "outer"), (of.inner_conformity, of.outer_conformity), of.raceway_radii, strict=True)
     for ring, conformity, raceway in sides:
@@ -456,38 +459,47 @@ def _doubt_flanks(found: LoadedBearing, ring: str) -> None:
     require(across <= most, "contact", received, allowed, "Lower the load, or take a wider arch_angle.")
 
 
-def _doubt_fit(of: BallBearing) -> None:
-    """Warn of a clearance below zero by which balls are pressed beyond what steel lasts under, unloaded."""
-    squeezed = of.series_stiffness * max(-0.5 * of.radial_clearance, 0.0) ** 1.5
+def doubt_fit(of: BallBearing | RollerBearing) -> None:
+    """Warn of a clearance below zero that presses what rolls beyond what steel lasts under, unloaded."""
+    squeezed = of.interference_force(overlap_of(of))
     peak = max(each.peak_pressure(each.approach(squeezed)) for each in (of.inner_contact, of.outer_contact))
     if peak > FATIGUE_PRESSURE:
         OutOfRangeWarning.warn(
-            f"clearance = {rounded(of.radial_clearance * 1e6, 4)} µm presses every ball with "
+            f"clearance = {rounded(of.radial_clearance * 1e6, 4)} µm presses every {of.ELEMENT} with "
             f"{rounded(peak / 1e9)} GPa, {rounded(squeezed, 4)} N, without any load: beyond "
             f"{FATIGUE_PRESSURE / 1e9:g} GPa bearing steel fatigues (ISO 281), and fits stay below. Is the "
             "unit right? Take a looser fit."
         )
 
 
+def overlap_of(of: BallBearing | RollerBearing) -> float:
+    """How far raceways overlap where something rolls between them unloaded, along its normal, m."""
+    return max(-0.5 * of.radial_clearance * math.cos(of.free_angle), 0.0)
+
+
+def pressed_by_fit(of: BallBearing | RollerBearing) -> tuple[float, str]:
+    """Force of a ball or roller, N, that comes from the fit alone, and what makes it smaller."""
+    squeezed = of.interference_force(overlap_of(of))
+    clearance = f"A clearance of {rounded(of.radial_clearance * 1e6, 4)} µm alone"
+    return squeezed, f"{clearance} presses each {of.ELEMENT} with {rounded(squeezed, 4)} N: take a looser fit"
+
+
 def _pressed_unloaded(found: LoadedBearing) -> dict[str, list[tuple[float, str]]]:
     """Forces of a ball on each ring, N, that come from no load, and what makes each of them smaller."""
     of = found.bearing
-    squeezed = of.series_stiffness * max(-0.5 * of.radial_clearance, 0.0) ** 1.5
-    clearance = f"A clearance of {rounded(of.radial_clearance * 1e6, 4)} µm alone"
-    fit = f"{clearance} presses each ball with {rounded(squeezed, 4)} N"
+    looser = pressed_by_fit(of)
     thrown = of.centrifugal_force(found.speed)
     turning = f"Centrifugal force alone is {rounded(thrown, 4)} N at {rounded(60.0 * found.speed, 5)} 1/min"
-    looser = (squeezed, f"{fit}: take a looser fit")
     slower = (thrown, f"{turning}: run slower")
     return {"inner": [looser], "outer": [looser, slower]}
 
 
-def doubt_speed(bearing: BallBearing, speed: float) -> None:
-    """Warn of a speed, turns per second, at which hardly any ball bearing runs."""
+def doubt_speed(bearing: RollingBearing, speed: float) -> None:
+    """Warn of a speed, turns per second, at which hardly any bearing runs."""
     if speed > bearing.fastest:
         factor = 60.0 * speed * 1e3 * bearing.pitch_diameter
         OutOfRangeWarning.warn(
             f"speed = {rounded(speed, 5)} Hz is {rounded(60.0 * speed, 6)} 1/min, {rounded(factor, 2)} "
-            f"mm/min by the pitch diameter: few ball bearings run beyond {rounded(FASTEST)}. "
+            f"mm/min by the pitch diameter: few {bearing.ELEMENT} bearings run beyond {rounded(FASTEST)}. "
             f'Is it in 1/min? Then write "{rounded(speed, 5)} 1/min".'
         )

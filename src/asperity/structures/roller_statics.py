@@ -10,7 +10,13 @@ import numpy as np
 from asperity.arguments import Array, ArrayLike, finite_array, not_negative, positive, require
 from asperity.contact.slices import EXPONENT, SlicedContact
 from asperity.errors import ComputationError, Grade, InputError, OutOfRangeWarning, percent
-from asperity.structures.bearing_statics import LoadedRow, angles_of_cage, doubt_pressure
+from asperity.structures.bearing_statics import (
+    LoadedRow,
+    angles_of_cage,
+    doubt_fit,
+    doubt_pressure,
+    pressed_by_fit,
+)
 from asperity.structures.least_energy import TOLERANCE, least_energy
 from asperity.structures.roller_bearing import STEEPEST_TILT, RollerBearing
 from asperity.written_numbers import rounded
@@ -440,16 +446,20 @@ def _followed(bearing: RollerBearing, azimuth: Array) -> Array:
 def _doubt(found: LoadedRollers) -> None:
     """Refuse or warn of contacts that are no lines, of dents, of crownings too deep, of sharp ends."""
     of = found.bearing
+    doubt_fit(of)
+    by_fit, looser = pressed_by_fit(of)
     for ring, contact, slices in (
         ("inner", of.inner_contact, found.inner_slices),
         ("outer", of.outer_contact, found.outer_slices),
     ):
         peak = float(contact.pressures(slices).max())
+        heaviest = float(slices.sum(axis=-1).max())
+        lighter = looser if by_fit > 0.5 * heaviest else "Lower the load or the tilt"
         width = 2.0 * peak / contact.modulus
         received = f"half a width of {rounded(width, 2)} radii on the {ring} ring"
         allowed = f"at most {STEEPEST:g}, where the roller is an elastic half-space"
-        require(width <= STEEPEST, "contact", received, allowed, "Lower the load or the tilt.")
-        doubt_pressure(of, ring, peak, STATIC_PRESSURE, "Lower the load or the tilt")
+        require(width <= STEEPEST, "contact", received, allowed, f"{lighter}.")
+        doubt_pressure(of, ring, peak, STATIC_PRESSURE, lighter)
     _doubt_crowning(found)
 
 
