@@ -1,6 +1,6 @@
-"""The gap that is left in cells at the rim of a contact, and their covered share: curves of `kernels.rims`.
+"""Curves of `kernels.rim_curves`: the gap left in cells at the rim of a contact, and their covered share.
 
-    python benchmarks/cell_rims.py            # the curves, as rims.toml beside the kernel has them
+    python benchmarks/cell_rims.py            # the curves, as rim_curves.toml beside the kernel has them
     python benchmarks/cell_rims.py --check    # against Hertz, 4 to 24 cells, balls and ellipses
     python benchmarks/cell_rims.py --rough    # rough balls against grids four times as fine
     python benchmarks/cell_rims.py --choice   # where covered cells serve better: `SMOOTH`
@@ -32,7 +32,7 @@ from asperity import BallBearing, HalfSpace, Hertz
 from asperity.contact.scan import ScanJob, scan_forces
 from asperity.kernels.batched import convolve_padded, padded_spectrum
 from asperity.kernels.influence import means_table
-from asperity.kernels.rims import END, KNOTS, PER_UNIT, SLANTS, cubics, every_knot
+from asperity.kernels.rim_curves import END, KNOTS, PER_UNIT, SLANTS, cubics, every_knot
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.rim_cells import roughness_within
 from asperity.surfaces.cell_means import cell_means, pressed_heights

@@ -9,7 +9,7 @@ from scipy import optimize
 
 from asperity import HalfSpace, Hertz, run
 from asperity.contact.batched import processor, solve_batched
-from asperity.kernels import rims
+from asperity.kernels import rim_curves, rims
 from asperity.laws import names, spec_of
 from asperity.reporting.contact_figures import contact_pressure
 from asperity.scenarios.geometry import Geometry
@@ -334,7 +334,7 @@ def test_covered_cells_take_no_more_iterations_than_whole_ones():
 
 def test_nothing_is_left_of_the_gap_far_inside_a_rim():
     for slant in (0.0, 0.3, 1.0):
-        assert rims.remaining_gap(rims.END, slant)[0] == pytest.approx(0.0, abs=1e-12)
+        assert rim_curves.remaining_gap(rim_curves.END, slant)[0] == pytest.approx(0.0, abs=1e-12)
 
 
 @pytest.mark.parametrize("cell", [(12, 0), (-12, 0), (0, 11), (8, -9), (-8, -8), (10, 6)])

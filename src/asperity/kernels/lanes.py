@@ -17,6 +17,8 @@ from numpy.typing import DTypeLike, NDArray
 
 VECTOR_BYTES = 64
 """Size of a vector, and of a line of a processor's cache."""
+EIGHT = 8
+"""Numbers in a vector, at least."""
 
 
 def width(dtype: DTypeLike) -> int:
@@ -149,6 +151,51 @@ def transpose(typing: Any, source: Any, start: Any, stride: Any, target: Any, fi
 
     n = types.intp
     return types.void(source, n, n, target, n, n), generate
+
+
+@_compiled
+def write_places(typing: Any, target: Any, index: Any, table: Any, row: Any, first: Any) -> Any:
+    """Write eight places, those in a row of a table of bytes and a first one added up, from an index on."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        written, index_, table_, row_, first_ = arguments
+        few, many = (ir.VectorType(ir.IntType(bits), EIGHT) for bits in (8, 32))
+        source = context.make_array(table)(context, builder, table_).data
+        source = builder.gep(source, [builder.mul(row_, row_.type(EIGHT))])
+        places = builder.load(builder.bitcast(source, ir.PointerType(few)), align=1)
+        start = builder.trunc(first_, ir.IntType(32))
+        single = builder.insert_element(ir.Constant(many, ir.Undefined), start, cgutils.int32_t(0))
+        starts = builder.shuffle_vector(single, single, _mask([0] * EIGHT))
+        data = context.make_array(target)(context, builder, written).data
+        data = builder.bitcast(builder.gep(data, [index_]), ir.PointerType(many))
+        builder.store(builder.add(builder.zext(places, many), starts), data, align=4)
+        return context.get_dummy_value()
+
+    n = types.intp
+    return types.void(target, n, table, n, n), generate
+
+
+@_compiled
+def columns(typing: Any, source: Any, places: Any, start: Any, target: Any, first: Any, step: Any) -> Any:
+    """Read a row of the source at each place of a vector of them; write eight columns, `step` apart."""
+
+    kind = Lanes(source.dtype)
+    align = kind.number.bitwidth // 8
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        read, known, start_, written, first_, step_ = arguments
+        place = context.make_array(places)(context, builder, known).data
+        rows = []
+        for i in range(kind.count):
+            index = builder.load(builder.gep(place, [builder.add(start_, start_.type(i))]))
+            rows.append(builder.load(_pointer(context, builder, source, read, index), align=align))
+        for i, row in enumerate(_transposed(builder, rows)[:EIGHT]):
+            index = builder.add(first_, builder.mul(step_, step_.type(i)))
+            builder.store(row, _pointer(context, builder, target, written, index), align=align)
+        return context.get_dummy_value()
+
+    n = types.intp
+    return types.void(source, places, n, target, n, n), generate
 
 
 def _transposed(builder: Any, rows: list[Any]) -> list[Any]:

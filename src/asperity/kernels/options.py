@@ -55,6 +55,8 @@ What Python calls of it is kept on disk, too.
 """
 REASSOCIATE: dict[str, Any] = {"fastmath": {"reassoc", "contract", "nsz"}}
 """Lets sums over poles be vectorised; NaN stays NaN."""
+CONTRACT: dict[str, Any] = {"fastmath": {"contract"}}
+"""Lets a product and a sum become one instruction, and leaves their order as it is written."""
 UNCHECKED: dict[str, Any] = {"error_model": "numpy"}
 """Divides without a look at the divisor: nothing leaves a loop then, which may become one of vectors."""
 DOCUMENTED = ("error_model", "fastmath", "inline", "nogil")

@@ -217,8 +217,8 @@ def _leaves(b: Box, share: float, hardness: float) -> bool:
 
 
 @compiled(**INNER, **REASSOCIATE)
-def _advance(b: Box, share: float, hardness: float, margin: float) -> None:
-    """Go a share of the step, within the bounds, and on them within a margin."""
+def _advance(b: Box, rims: Rims | None, share: float, hardness: float, margin: float) -> None:
+    """Go a share of the step, within the bounds, and on them within a margin; then no gap is taken off."""
     real = b.z.dtype.type
     zero = real(0.0)
     factor = real(share)
@@ -229,9 +229,14 @@ def _advance(b: Box, share: float, hardness: float, margin: float) -> None:
         wanted = b.pressure[q] + factor * b.step[q]
         wanted = zero if wanted <= low else wanted
         b.pressure[q] = cap if wanted >= high else wanted
-    for q in range(len(b.z)):  # few arrays to a loop: else the compiler does not make vectors of it
-        b.previous[q] = b.residual[q]
-        b.residual[q] += factor * b.response[q]
+    if rims is None:
+        for q in range(len(b.z)):  # few arrays to a loop: else the compiler does not make vectors of it
+            b.previous[q] = b.residual[q]
+            b.residual[q] += factor * b.response[q]
+    else:
+        for q in range(len(b.z)):
+            b.previous[q] = b.residual[q]
+            b.residual[q] = rims.bare[q] + factor * b.response[q]
 
 
 @compiled(**INNER, **REASSOCIATE)
@@ -334,7 +339,7 @@ def solve(
             level = find_level(b, cap)
         tolerance = task.rtol * (task.largest + level - yielded)
         violated = _free(b.pressure, b, cap, level, tolerance)
-        if rims is not None and 0.0 < violated <= rims.number[0]:
+        if rims is not None and 0.0 < violated <= rims.number[1]:
             violated = still_violated(b, rims, violated, tolerance, taps[0])
         if not violated:
             break
@@ -370,7 +375,7 @@ def solve(
             share = 1.0 if share >= WHOLE else share
         elif share > 1.0 and _leaves(b, share, cap):
             share = 1.0
-        _advance(b, share, cap, margin)
+        _advance(b, rims, share, cap, margin)
         sink_by_share(b, edges, share)
         set_rims(b, rims, level, taps[0])
         yielded += share * further

@@ -9,124 +9,76 @@ function of p/S and of the slant, times S = √(Δₓp² + Δᵧp²) and the wid
 E*: it falls to nothing as the rim crosses the cell. Contacts whose cells keep this gap grow evenly with the
 approach; where cells are all or nothing, each that enters makes the stiffness jump.
 
-The curves are those of Hertz's contacts, whose cells are known: ``benchmarks/cell_rims.py`` computes them. On
-cells that are not square, directions count on the grid, and the width is that of a cell along the normal.
+The curves, of `kernels.rim_curves`, are those of Hertz's contacts, whose cells are known. On cells that are
+not square, directions count on the grid, and the width is that of a cell along the normal.
+
+After each iteration cells at rims are listed, first those whose gap is steep: others, a third or more, keep a
+hundredth of it. They are computed by whole vectors: what is known of them is copied together, in chunks.
 """
 
-import tomllib
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from asperity.files import packaged
 from asperity.kernels.box import Box
-from asperity.kernels.options import CALLED, INNER, LOOP, REASSOCIATE, UNCHECKED, compiled
+from asperity.kernels.lanes import EIGHT, aligned, columns, lanes, write_places
+from asperity.kernels.options import CALLED, CONTRACT, INNER, LOOP, REASSOCIATE, UNCHECKED, compiled
+from asperity.kernels.rim_curves import (
+    END,
+    LEFT,
+    PER_UNIT,
+    covered_share,
+    cubic,
+    curve_rows,
+    remaining_gap,
+    row_behind,
+)
 
-KNOTS, SLANTS = 33, 7
-"""Values of a curve, even in √(p/S) from 0 to END, and curves, even in the root of the slant.
-
-The slant is the smaller of the differences over the larger: 0 for a rim along an axis of the grid, 1 along
-the diagonal of its cells.
-"""
-END = 1.28
-"""Largest √(p/S) of a cell at a rim: beyond it nothing is left."""
-PER_UNIT = (KNOTS - 1) / END
-"""Knots per unit of √(p/S)."""
-_CURVES = tomllib.loads(packaged("kernels/rims.toml"))
-LEFT = np.array(_CURVES["left"])
-"""Gap that is left, over S times the width of a cell and E*: slant after slant."""
-COVERED = np.array(_CURVES["covered"])
-"""Share of a cell inside a rim of pressures whose squares are straight, likewise."""
-BENT = np.array(_CURVES["bent"])
-"""What it gains where they bend, over the bend, at every third knot."""
 MOST_BENT = 1.0 / 6.0
 """Bend, at most: that of a ball with six cells in the half-width. Smaller asperities are not resolved."""
 BEND_SHARE, BEND_LEFT = 0.85, 0.006
 """Bend at a rim over that of three cells inside, and what means over cells add to it: of balls."""
-LEAST_SLOPE = 0.02
+STEEP_END = 0.9
+"""Largest √(p/S) of a cell whose gap is steep: beyond it a cell gives way as those that keep no gap."""
+LEAST_SLOPE = np.float32(0.02)
 """Slope of a curve, at least, by which the pressure that a residual asks for is estimated."""
-STEEP, MOST_LEFT = 9.0, 3.0
-"""Bounds of the gap that is left without pressure, over the larger difference and that of both."""
-NO_STEP = 1e-30
-"""Square of a difference of pressures, Pa², beside which none is zero."""
-TOGETHER = 1e-4
+MOST_LEFT = 2.2
+"""Bound of the gap that is left without pressure, over that of both differences."""
+NO_STEP = np.float32(1e-10)
+"""Difference of pressures, Pa, beside which none is zero."""
+TOGETHER = np.float32(1e-4)
 """Difference in √(p/S) below which a slope stands for a difference quotient."""
-SHARED = 0.5
+SHARED = np.float32(0.5)
 """Share of what a cell yields more that a preconditioner takes: its neighbours give way, too."""
-
-
-def cubics(values: NDArray) -> NDArray:
-    """Coefficients (curves, KNOTS − 1, 4) of splines through values, level at the last."""
-    knots = values.shape[1]
-    matrix = 4.0 * np.eye(knots) + np.eye(knots, k=1) + np.eye(knots, k=-1)
-    matrix[0, 0], matrix[-1, -2] = 2.0, 0.0
-    target = np.zeros_like(values)
-    target[:, 0] = 3.0 * (values[:, 1] - values[:, 0])
-    target[:, 1:-1] = 3.0 * (values[:, 2:] - values[:, :-2])
-    slopes = np.linalg.solve(matrix, target.T).T
-    low = slopes[:, :-1]
-    high = slopes[:, 1:]
-    step = np.diff(values)
-    return np.stack([values[:, :-1], low, 3.0 * step - 2.0 * low - high, low + high - 2.0 * step], axis=2)
-
-
-def every_knot(values: NDArray) -> NDArray:
-    """Values (curves, KNOTS) of curves that are known at every third knot, straight between them."""
-    knots = np.arange(KNOTS) / 3.0
-    return np.stack([np.interp(knots, np.arange(len(each)), each) for each in values])
-
-
-_LEFT, _COVERED, _BENT = (cubics(each).ravel() for each in (LEFT, COVERED, every_knot(BENT)))
-
-
-@compiled(**INNER, **UNCHECKED)
-def between_curves(curves: NDArray, ratio: float, slant: float) -> tuple[float, float, float]:
-    """Find a value of curves, and its derivatives by the ratio √(p/S), from 0 to END, and by the slant."""
-    place = ratio * PER_UNIT
-    turn = np.sqrt(slant) * (SLANTS - 1)
-    k = min(np.int32(place), np.int32(KNOTS - 2))  # whole numbers that fit beside each other into a vector
-    j = min(np.int32(turn), np.int32(SLANTS - 2))
-    t = place - k
-    lower = float(j)
-    per_slant = (SLANTS - 1) ** 2 / (2.0 * lower + 1.0)
-    share = slant * per_slant - lower * lower / (2.0 * lower + 1.0)
-    i = 4 * (j * np.int32(KNOTS - 1) + k)
-    o = i + np.int32(4 * (KNOTS - 1))
-    a = curves[i]
-    b = curves[i + 1]
-    c = curves[i + 2]
-    d = curves[i + 3]
-    one = a + t * (b + t * (c + t * d))
-    slope = b + t * (2.0 * c + t * 3.0 * d)
-    a = curves[o]
-    b = curves[o + 1]
-    c = curves[o + 2]
-    d = curves[o + 3]
-    turned = a + t * (b + t * (c + t * d)) - one
-    steeper = b + t * (2.0 * c + t * 3.0 * d) - slope
-    return one + share * turned, (slope + share * steeper) * PER_UNIT, turned * per_slant
-
-
-@compiled(**INNER, **UNCHECKED)
-def remaining_gap(ratio: float, slant: float) -> tuple[float, float, float]:
-    """Find the gap that is left at a ratio √(p/S), over S times the width and E*, and its derivatives."""
-    return between_curves(_LEFT, ratio, slant)
-
+ZERO, ONE, TWO, LARGEST = (np.float32(each) for each in (0.0, 1.0, 2.0, END))
+"""Numbers in single precision, which computes in no other's stead."""
 
 CHUNK = 64
-"""Cells at rims that are computed in one go, a power of two."""
-LANES = 8
-"""Cells of a vector, at most: a last one is filled with cells that nobody asks for."""
-P, X, Y, UNMET, GAP, OWN, WEIGHT, ALONE, MASKED = range(9)
-"""What is known of a cell at a rim, one number after the other.
+"""Cells at rims that are computed in one go: whole vectors, of which the last is filled up."""
+P, X, Y, UNMET, RATIO, SLANT, WITHIN, COLUMNS = range(8)
+"""What is known of the cells of a chunk while it is computed, one number after the other.
 
-Its pressure and the differences beside it, along and across, Pa, and the residual, m, of which all else is
-computed; the gap that is left, m; its difference quotient up to the pressure that the residual asks for, not
-positive, m/Pa; weight of the cell where steps are preconditioned, and what it yields beyond that to a
-residual of its own, Pa/m; residual on the free set, m, before it is weighed.
+Pressure and the differences beside it, along and across, Pa; the residual, m; √(p/S), the slant, and how far
+behind its knot; then the numbers of a row of curves. In place of the pressure comes the step, Pa, in those
+of the differences its inverse and the width, m/Pa.
 """
-NUMBERS = 9
+NUMBERS = COLUMNS + EIGHT
+GAP, OWN, WEIGHT, ALONE, MASKED = range(5)
+"""What is kept of the cells of a chunk.
+
+The gap that is left, m. Where it is steep, the quotient of its difference up to the pressure that the
+residual asks for, not positive, m/Pa; weight of the cell where steps are preconditioned, and what it yields
+beyond that to a residual of its own, Pa/m; residual on the free set, m, before it is weighed.
+"""
+KEPT = 5
+BYTES, GATHER, LAST = np.uint64(0x0101010101010101), np.uint64(0x0102040810204080), np.uint64(56)
+"""First bits of eight bytes; what brings them together in the last byte, and where that begins."""
+POSITIONS = np.array(
+    [[*(i for i in range(8) if m >> i & 1), *range(8)][:8] for m in range(256)], np.uint8
+).ravel()
+COUNTS = np.array([m.bit_count() for m in range(256)], np.uint8)
+"""Places of the bits that are set in a byte, and their number."""
 
 
 class Rims(NamedTuple):
@@ -137,18 +89,26 @@ class Rims(NamedTuple):
 
     along: float  # side of a cell over E*, m/Pa
     across: float  # likewise
-    number: NDArray  # (1,), number of cells at rims
+    number: NDArray  # (2,), number of cells at rims, and of those whose gap is steep, which come first
     cell: NDArray  # their places in the box
-    # what is known of them, chunk after chunk: each of the numbers, of all cells of the chunk
-    known: NDArray
+    kept: NDArray  # what is kept of them, chunk after chunk: each of the numbers, of all cells of the chunk
+    bare: NDArray  # residual of all cells of the box with no gap taken off, m
+    marks: NDArray  # of the cells of the box: one for a steep gap, two for another
+    eights: NDArray  # eight of them in one number
+    chunk: NDArray  # room for what is computed of a chunk
+    places: NDArray  # (CHUNK,), where its rows of the curves begin
+    curves: NDArray  # from `rim_curves.curve_rows`
 
 
-def rims(along: float, across: float, count: int, dtype: DTypeLike) -> Rims:
-    """Make room for what is known of the rims among so many cells, with sides over E*, m/Pa."""
-    cell: NDArray = np.zeros(count + 1, dtype=np.int64)  # one is written ahead
-    number = np.zeros(1, dtype=np.int64)
-    known: NDArray = np.zeros(NUMBERS * CHUNK * -(-count // CHUNK), dtype=dtype)
-    return Rims(along, across, number, cell, known)
+def rims(along: float, across: float, size: int, dtype: DTypeLike) -> Rims:
+    """Make room for what is known of the rims of a box whose fields have a size, with sides over E*, m/Pa."""
+    chunks = -(-size // CHUNK)
+    eights: NDArray = np.zeros(CHUNK * chunks // 8, dtype=np.uint64)
+    return Rims(
+        along, across, np.zeros(2, dtype=np.int64), np.zeros(size + EIGHT, dtype=np.uint32),
+        aligned(KEPT * CHUNK * chunks, dtype), aligned(size, dtype), eights.view(np.uint8), eights,
+        aligned(NUMBERS * CHUNK, dtype), np.zeros(CHUNK, dtype=np.int32), curve_rows(LEFT, dtype),
+    )  # fmt: skip
 
 
 @compiled(**INNER)
@@ -158,18 +118,17 @@ def cells_beside(rims: Rims | None) -> int:
 
 
 @compiled(**INNER, **REASSOCIATE)
-def _mark_rims(b: Box, side: float, level: float) -> None:
-    """Set `z` to one in cells whose pressure is less than the step between their neighbours, else to zero.
+def _mark_rims(b: Box, rims: Rims, level: float) -> None:
+    """Mark cells whose pressure is less than the step between their neighbours; keep the residual.
 
-    Not in those without pressure that stay apart by more than a rim leaves in any cell. The side of a cell is
-    over E*, m/Pa, the level of residuals in m.
+    Not those without pressure that stay apart by more than a rim leaves in any cell; level of residuals in m.
     """
     real = b.z.dtype.type
-    zero, one = real(0.0), real(1.0)
+    zero = real(0.0)
     most = real(END**4)
-    steep = real(side * STEEP)
+    steep = real(STEEP_END**4)
+    side = max(rims.along, rims.across)
     wide = real(side * MOST_LEFT)
-    rise = real(side)
     level = real(level)
     margin = (len(b.framed) - len(b.z)) // 2
     above = b.framed[margin - b.pitch :]
@@ -179,129 +138,185 @@ def _mark_rims(b: Box, side: float, level: float) -> None:
         p = middle[q + 1]
         x = abs(below[q] - above[q])
         y = abs(middle[q + 2] - middle[q])
-        far, near = max(x, y), min(x, y)
-        apart = min(rise * far + steep * near, wide * (far + near))
-        at_rim = p * p < most * (x * x + y * y) and (p > zero or b.residual[q] - level < apart)
-        b.z[q] = one if at_rim else zero
+        squares = x * x + y * y
+        at_rim = p * p < most * squares and (p > zero or b.residual[q] < wide * (x + y) + level)
+        flat = at_rim and p * p >= steep * squares
+        rims.marks[q] = np.uint8(at_rim) + np.uint8(flat)
+    for q in range(len(b.z)):
+        rims.bare[q] = b.residual[q]
 
 
 @compiled(**INNER)
-def _find_rims(b: Box, rims: Rims, level: float) -> int:
-    """List the cells at rims; return how many there are."""
-    _mark_rims(b, max(rims.along, rims.across), level)
-    found = 0
-    for q in range(len(b.z)):
-        rims.cell[found] = q
-        found += b.z[q] > 0.0
+def _list(rims: Rims, size: int, bit: int, found: int) -> int:
+    """List those of so many cells whose mark has a bit, behind those found; return how many there are."""
+    for k in range(size // 8):
+        byte = ((rims.eights[k] >> np.uint64(bit)) & BYTES) * GATHER >> LAST
+        write_places(rims.cell, found, POSITIONS, np.int64(byte), 8 * k)
+        found += COUNTS[byte]
     return found
 
 
 @compiled(**INNER, **UNCHECKED)
 def _at_rim(
-    p: float, x: float, y: float, x_share: float, y_share: float
-) -> tuple[float, float, float, float, float, float, float, float]:
-    """Find what a cell at a rim keeps, from its pressure and the differences of its neighbours', Pa.
+    p: float, x: float, y: float, side: float, elongation: float
+) -> tuple[float, float, float, float, float]:
+    """Find how a rim crosses a cell, from its pressure and its neighbours' differences, not negative, Pa.
 
-    The shares are the inverse squares of the sides of a cell over E*. Returns the scale of the gap, m, and
-    the step S; ratio and slant; the gap over the scale, and its derivative by the ratio; derivatives of
-    the gap by the differences along and across, m/Pa.
+    Side along over E*, m/Pa; the elongation is the square of that side over the other. Returns the step S and
+    its inverse; width of the cell along the normal, over E*; ratio √(p/S) and slant.
     """
-    xx = x * x + NO_STEP
+    xx = x * x + NO_STEP * NO_STEP
     yy = y * y
-    squares = xx + yy
-    step = np.sqrt(squares)
-    width = 1.0 / np.sqrt(xx * x_share + yy * y_share)
-    scale = squares * width
-    ratio = min(np.sqrt(p / step), END)
-    wide = xx >= yy
-    along = np.sqrt(xx)
-    across = abs(y)
-    far, near = along if wide else across, across if wide else along
-    per_far = 1.0 / far
-    slant = near * per_far
-    left, slope, turn = remaining_gap(ratio, slant)
-    by_step = (2.0 * left - 0.5 * slope * ratio) * width
-    by_width = left * scale * width * width
-    by_near = turn * scale * per_far
-    by_far = -slant * by_near
-    along = x * (by_step - by_width * x_share) + np.copysign(1.0, x) * (by_far if wide else by_near)
-    across = y * (by_step - by_width * y_share) + np.copysign(1.0, y) * (by_near if wide else by_far)
-    return scale, step, ratio, slant, left, slope, along, across
+    step = np.sqrt(xx + yy)
+    normal = np.sqrt(xx + elongation * yy)
+    far = max(x, y) + NO_STEP
+    product = ONE / (step * normal * far)
+    per_step = normal * far * product
+    width = side * (step * step * far * product)
+    slant = min(x, y) * (step * normal * product)
+    return step, per_step, width, min(np.sqrt(p * per_step), LARGEST), slant
 
 
-@compiled(**CALLED, **REASSOCIATE, **UNCHECKED)
-def _compute(c: NDArray, count: int, x_share: float, y_share: float, stiffness: float) -> None:
-    """Compute what is known of the cells of a chunk: see `set_rims`."""
+@compiled(**CALLED, **CONTRACT, **UNCHECKED)
+def _place(c: NDArray, places: NDArray, count: int, side: float, elongation: float) -> None:
+    """Find how a rim crosses the cells of a chunk, and where the curves begin that hold there."""
+    real = c.dtype.type
+    side = real(side)
+    elongation = real(elongation)
     for k in range(count):
-        p, unmet = c[P * CHUNK + k], c[UNMET * CHUNK + k]
-        found = _at_rim(p, c[X * CHUNK + k], c[Y * CHUNK + k], x_share, y_share)
-        scale = found[0]
-        step = found[1]
-        ratio = found[2]
-        left = found[4]
-        slope = found[5]
-        unmet -= scale * left
+        x = abs(c[X * CHUNK + k])
+        y = abs(c[Y * CHUNK + k])
+        step, per_step, width, ratio, slant = _at_rim(c[P * CHUNK + k], x, y, side, elongation)
+        row, within = row_behind(ratio, slant)
+        c[P * CHUNK + k] = step
+        c[X * CHUNK + k] = per_step
+        c[Y * CHUNK + k] = width
+        c[RATIO * CHUNK + k] = ratio
+        c[SLANT * CHUNK + k] = slant
+        c[WITHIN * CHUNK + k] = within
+        places[k] = row * np.int32(lanes(c))
+
+
+@compiled(**INNER, **CONTRACT, **UNCHECKED)
+def _between(c: NDArray, k: int) -> tuple[float, float]:
+    """Gap that is left in a cell of a chunk, over S, and its slope from knot to knot, likewise, m/Pa."""
+    o = COLUMNS * CHUNK + k
+    slant = c[SLANT * CHUNK + k]
+    left, slope = cubic(
+        c[o] + slant * c[o + 4 * CHUNK],
+        c[o + CHUNK] + slant * c[o + 5 * CHUNK],
+        c[o + 2 * CHUNK] + slant * c[o + 6 * CHUNK],
+        c[o + 3 * CHUNK] + slant * c[o + 7 * CHUNK],
+        c[WITHIN * CHUNK + k],
+    )
+    width = c[Y * CHUNK + k]
+    return width * left, width * min(slope, -LEAST_SLOPE / PER_UNIT)
+
+
+@compiled(**CALLED, **CONTRACT, **UNCHECKED)
+def _find_gaps(c: NDArray, kept: NDArray, count: int) -> None:
+    """Find the gap that is left in the cells of a chunk."""
+    for k in range(count):
+        kept[GAP * CHUNK + k] = c[P * CHUNK + k] * _between(c, k)[0]
+
+
+@compiled(**CALLED, **CONTRACT, **UNCHECKED)
+def _find_steep_gaps(c: NDArray, kept: NDArray, count: int, stiffness: float) -> None:
+    """Find all that is kept of the cells of a chunk, with one division."""
+    stiffness = c.dtype.type(stiffness)
+    softness = -TWO / stiffness
+    for k in range(count):
+        ratio = c[RATIO * CHUNK + k]
+        left, slope = _between(c, k)
         # what p - p₀ + stiffness (unmet - gap + gap₀) = 0 gives, the gap straight in the ratio
-        steep = min(slope, -LEAST_SLOPE)
-        soft = step / stiffness
-        half = 0.5 * scale * steep / soft
-        far = half * half - 2.0 * half * ratio + ratio * ratio - unmet / soft
-        other = max(half + np.sqrt(max(far, 0.0)), 0.0)
-        own = scale / step * steep / max(ratio + other, TOGETHER)
-        weight = 1.0 / (1.0 - SHARED * own * stiffness)
-        c[GAP * CHUNK + k] = scale * left
-        c[OWN * CHUNK + k] = own
-        c[WEIGHT * CHUNK + k] = weight
-        c[ALONE * CHUNK + k] = stiffness * (1.0 / (1.0 - own * stiffness) - weight * weight)
+        soft = -SHARED * PER_UNIT * stiffness * slope
+        far = soft * soft + TWO * soft * ratio + ratio * ratio
+        far -= stiffness * (c[UNMET * CHUNK + k] * c[X * CHUNK + k] - left)
+        between = max(ratio + max(np.sqrt(max(far, ZERO)) - soft, ZERO), TOGETHER)
+        # the weight is 1 / (1 + soft / between), what a cell yields alone 1 / (1 + 2 soft / between)
+        once = between + soft
+        twice = once + soft
+        share = ONE / (between * once * once * twice)
+        kept[GAP * CHUNK + k] = c[P * CHUNK + k] * left
+        kept[OWN * CHUNK + k] = softness * soft * (once * once * twice * share)
+        kept[WEIGHT * CHUNK + k] = between * between * once * twice * share
+        kept[ALONE * CHUNK + k] = stiffness * (soft * soft * between * between * share)
 
 
 @compiled(**INNER)
-def _look(b: Box, rims: Rims, k: int, c: NDArray, i: int) -> None:
-    """Note the pressure of a cell, by number, and the differences beside it, in a place of a chunk."""
-    q = rims.cell[k] + (len(b.framed) - len(b.z)) // 2
-    p = b.framed
-    c[P * CHUNK + i] = p[q]
-    c[X * CHUNK + i] = p[q + b.pitch] - p[q - b.pitch]
-    c[Y * CHUNK + i] = p[q + 1] - p[q - 1]
+def _look(b: Box, rims: Rims, first: int, count: int, level: float) -> None:
+    """Copy what is known of so many cells from the first on together."""
+    margin = (len(b.framed) - len(b.z)) // 2
+    above = b.framed[margin - b.pitch :]
+    middle = b.framed[margin - 1 :]
+    below = b.framed[margin + b.pitch :]
+    level = b.z.dtype.type(level)
+    c = rims.chunk
+    for i in range(count):
+        q = rims.cell[first + i]
+        c[P * CHUNK + i] = middle[q + 1]
+        c[X * CHUNK + i] = below[q] - above[q]
+        c[Y * CHUNK + i] = middle[q + 2] - middle[q]
+        c[UNMET * CHUNK + i] = b.residual[q] - level
 
 
 @compiled(**CALLED)
 def set_rims(b: Box, rims: Rims | None, level: float, stiffness: float) -> None:
-    """Find the cells at rims, and take the gap that is left in them off the residual, from the pressure.
+    """Find the cells at rims, and take the gap that is left in them off a residual that lacks none.
 
-    What was taken off before is given back. The gap falls with the pressure, the steeper the less there is:
-    what counts is the difference quotient up to the pressure that would meet the residual above a level, m,
-    if no other cell changed its own. The stiffness, Pa/m, is that of a cell among others.
+    The gap falls with the pressure, the steeper the less there is: what counts is the difference quotient up
+    to the pressure that would meet the residual above a level, m, if no other cell changed its own. The
+    stiffness, Pa/m, is that of a cell among others.
     """
     if rims is not None:
-        give_back(b, rims)
-        number = _find_rims(b, rims, level)
+        _mark_rims(b, rims, level)
+        steep = _list(rims, len(b.z), 0, 0)
+        number = _list(rims, len(b.z), 1, steep)
         rims.number[0] = number
-        x_share, y_share = 1.0 / rims.along**2, 1.0 / rims.across**2
+        rims.number[1] = steep
+        lane = lanes(b.z)
+        elongation = (rims.along / rims.across) ** 2
         for first in range(0, number, CHUNK):
             count = min(CHUNK, number - first)
-            c = rims.known[NUMBERS * first :]
+            filled = (count + lane - 1) // lane * lane
+            kept = rims.kept[KEPT * first :]
+            _look(b, rims, first, count, level)
+            _place(rims.chunk, rims.places, filled, rims.along, elongation)
+            for k in range(0, filled, lane):
+                columns(rims.curves, rims.places, k, rims.chunk, COLUMNS * CHUNK + k, CHUNK)
+            if first < steep:
+                _find_steep_gaps(rims.chunk, kept, filled, stiffness)
+            else:
+                _find_gaps(rims.chunk, kept, filled)
             for i in range(count):
-                _look(b, rims, first + i, c, i)
-                c[UNMET * CHUNK + i] = b.residual[rims.cell[first + i]] - level
-            _compute(c, (count + LANES - 1) // LANES * LANES, x_share, y_share, stiffness)
-            for i in range(count):
-                b.residual[rims.cell[first + i]] -= c[GAP * CHUNK + i]
+                b.residual[rims.cell[first + i]] -= kept[GAP * CHUNK + i]
 
 
 @compiled(**INNER)
-def _place(k: int) -> int:
-    """Place of the first number that is known of a cell, by number."""
+def _place_of(k: int) -> int:
+    """Place of the first number that is kept of a cell, by number."""
     within = k & (CHUNK - 1)
-    return NUMBERS * (k - within) + within
+    return KEPT * (k - within) + within
 
 
 @compiled(**INNER)
 def take_off(b: Box, rims: Rims | None) -> None:
-    """Take the gap that is left at rims off the residual."""
+    """Take the gap that is left at rims off a residual."""
     if rims is not None:
+        for q in range(len(b.z)):
+            rims.bare[q] = b.residual[q]
         for k in range(rims.number[0]):
-            b.residual[rims.cell[k]] -= rims.known[_place(k) + GAP * CHUNK]
+            b.residual[rims.cell[k]] -= rims.kept[_place_of(k) + GAP * CHUNK]
+
+
+@compiled(**INNER)
+def lay_bare(b: Box, rims: Rims | None) -> None:
+    """Find the residual with no gap taken off."""
+    if rims is not None:
+        for q in range(len(b.z)):
+            rims.bare[q] = b.residual[q]
+        for k in range(rims.number[0]):
+            rims.bare[rims.cell[k]] += rims.kept[_place_of(k) + GAP * CHUNK]
 
 
 @compiled(**INNER, **UNCHECKED)
@@ -313,32 +328,17 @@ def move_rims(b: Box, rims: Rims | None, pitch: int, row: int, column: int) -> N
             rims.cell[k] += i * (b.pitch - pitch) - row * b.pitch - column
 
 
-@compiled(**INNER)
-def forget_rims(rims: Rims | None) -> None:
-    """Forget the cells at rims; what they keep is on the residual."""
-    if rims is not None:
-        rims.number[0] = 0
-
-
-@compiled(**INNER)
-def give_back(b: Box, rims: Rims | None) -> None:
-    """Give the gap that was taken off the residual back."""
-    if rims is not None:
-        for k in range(rims.number[0]):
-            b.residual[rims.cell[k]] += rims.known[_place(k) + GAP * CHUNK]
-
-
 @compiled(**INNER, **UNCHECKED)
 def _stiffness_share(rims: Rims, k: int, stiffness: float) -> float:
-    """How far a cell at a rim gives way to a residual, over what a cell among others does."""
-    return 1.0 / (1.0 - rims.known[_place(k) + OWN * CHUNK] * stiffness)
+    """How far a cell whose gap is steep gives way to a residual, over what a cell among others does."""
+    return 1.0 / (1.0 - rims.kept[_place_of(k) + OWN * CHUNK] * stiffness)
 
 
 @compiled(**CALLED)
 def still_violated(b: Box, rims: Rims, violated: float, tolerance: float, stiffness: float) -> float:
     """Take those cells off a number of violated ones that are soft enough not to matter."""
     margin = (len(b.masked) - len(b.residual)) // 2
-    for k in range(rims.number[0]):
+    for k in range(rims.number[1]):
         m = abs(b.masked[margin + rims.cell[k]])
         if m > tolerance and m * _stiffness_share(rims, k, stiffness) <= tolerance:
             violated -= 1.0
@@ -350,18 +350,20 @@ def set_shares(b: Box, rims: Rims, stiffness: float) -> None:
     """Set `z` to what the residual of each cell counts for."""
     for q in range(len(b.z)):
         b.z[q] = 1.0
-    for k in range(rims.number[0]):
+    for k in range(rims.number[1]):
         b.z[rims.cell[k]] = _stiffness_share(rims, k, stiffness)
 
 
 @compiled(**INNER)
 def weigh(b: Box, rims: Rims) -> None:
     """Weigh what is masked by how much softer cells at rims are than others."""
-    margin = (len(b.masked) - len(b.residual)) // 2
-    for k in range(rims.number[0]):
-        m = b.masked[margin + rims.cell[k]]
-        rims.known[_place(k) + MASKED * CHUNK] = m
-        b.masked[margin + rims.cell[k]] = m * rims.known[_place(k) + WEIGHT * CHUNK]
+    masked = b.masked[(len(b.masked) - len(b.residual)) // 2 :]
+    for k in range(rims.number[1]):
+        q = rims.cell[k]
+        o = _place_of(k)
+        m = masked[q]
+        rims.kept[o + MASKED * CHUNK] = m
+        masked[q] = m * rims.kept[o + WEIGHT * CHUNK]
 
 
 @compiled(**INNER)
@@ -370,14 +372,15 @@ def weigh_step(b: Box, rims: Rims, target: NDArray) -> tuple[float, float, float
     rho = 0.0
     moved = 0.0
     total = 0.0
-    for k in range(rims.number[0]):
+    for k in range(rims.number[1]):
         q = rims.cell[k]
-        o = _place(k)
+        o = _place_of(k)
         before = target[q]
-        m = rims.known[o + MASKED * CHUNK]
-        alone = rims.known[o + ALONE * CHUNK] * m
-        target[q] = before * rims.known[o + WEIGHT * CHUNK] + alone
-        gained = target[q] - before
+        m = rims.kept[o + MASKED * CHUNK]
+        alone = rims.kept[o + ALONE * CHUNK] * m
+        after = before * rims.kept[o + WEIGHT * CHUNK] + alone
+        target[q] = after
+        gained = after - before
         rho += alone * m
         moved += b.previous[q] * gained
         total += gained
@@ -388,9 +391,9 @@ def weigh_step(b: Box, rims: Rims, target: NDArray) -> tuple[float, float, float
 def bend(b: Box, rims: Rims) -> float:
     """Add up −step · (quotient of the gap) · step: the curvature that cells at rims add to a step."""
     stored = 0.0
-    for k in range(rims.number[0]):
+    for k in range(rims.number[1]):
         step = b.step[rims.cell[k]]
-        stored -= rims.known[_place(k) + OWN * CHUNK] * step * step
+        stored -= rims.kept[_place_of(k) + OWN * CHUNK] * step * step
     return stored
 
 
@@ -430,6 +433,7 @@ def rim_slopes(pressure: NDArray, along: float, across: float, slopes: NDArray, 
     (nx, ny) shares.
     """
     nx, ny = pressure.shape
+    elongation = (along / across) ** 2
     for i in range(nx):
         for j in range(ny):
             p = pressure[i, j]
@@ -437,10 +441,15 @@ def rim_slopes(pressure: NDArray, along: float, across: float, slopes: NDArray, 
             x = (pressure[i + 1, j] if i + 1 < nx else 0.0) - (pressure[i - 1, j] if i > 0 else 0.0)
             y = (pressure[i, j + 1] if j + 1 < ny else 0.0) - (pressure[i, j - 1] if j > 0 else 0.0)
             if p > 0.0 and p * p < END**4 * (x * x + y * y):
-                found = _at_rim(p, x, y, 1.0 / along**2, 1.0 / across**2)
-                scale, step, ratio, slant, _left, slope, slopes[1, i, j], slopes[2, i, j] = found
-                slopes[0, i, j] = 0.5 * slope * scale / (step * ratio)
-                bend = bend_inside(pressure, i, j, x, y, slant)
-                share = between_curves(_COVERED, ratio, slant)[0]
-                share += bend * between_curves(_BENT, ratio, slant)[0]
-                covered[i, j] = min(max(share, 0.0), 1.0)
+                step, _, width, ratio, slant = _at_rim(p, abs(x), abs(y), along, elongation)
+                left, slope, turn = remaining_gap(ratio, slant)
+                by_step = (2.0 * left - 0.5 * slope * ratio) * width / step
+                by_width = left * (width / along) ** 2 * width / step
+                by_near = turn * step * width / max(abs(x), abs(y))
+                by_far = -slant * by_near
+                wide = abs(x) >= abs(y)
+                slopes[0, i, j] = 0.5 * slope * width / ratio
+                slopes[1, i, j] = x * (by_step - by_width) + np.sign(x) * (by_far if wide else by_near)
+                slopes[2, i, j] = y * (by_step - by_width * elongation)
+                slopes[2, i, j] += np.sign(y) * (by_near if wide else by_far)
+                covered[i, j] = covered_share(ratio, slant, bend_inside(pressure, i, j, x, y, slant))

@@ -15,7 +15,7 @@ from asperity.kernels.projected_cg import Task, solve, survey, true_residual
 from asperity.kernels.rims import (
     Rims,
     cells_beside,
-    forget_rims,
+    lay_bare,
     move_rims,
     rims,
     set_rims,
@@ -87,7 +87,9 @@ def room(
     mx, my = (int(known.lengths[-(-n // UNIT)]) for n in (nx, ny))
     dtype = known.spectra.dtype
     size = box_room(nx, ny, mx, my, width(dtype))
-    covered = None if sides is None else rims(*sides, nx * ny, dtype)
+    covered = (
+        None if sides is None else rims(*sides, size // 10, dtype)
+    )  # a field is less than a tenth of a box
     edges = soft_cells(soft, nx * ny, dtype)
     return Room(np.empty(ny), aligned(size, dtype), aligned(size, dtype), covered, edges)
 
@@ -224,7 +226,6 @@ def solve_contact(known: Influence, b: Block, approach: float, pressure: NDArray
     load = b.load
     compliance = b.compliance
     largest, first, end, left, right = overlap_box(b.gap, approach, b.room.lowest)
-    forget_rims(b.room.rims)  # those of the contact before
     beside = cells_beside(b.room.rims)
     first = max(first - beside, 0)
     end = min(end + beside, b.gap.shape[0])
@@ -265,6 +266,7 @@ def solve_contact(known: Influence, b: Block, approach: float, pressure: NDArray
             inner = empty_box(rows, columns, b.room.inner)
             cut(outer, row, column, inner)
             move_rims(inner, b.room.rims, outer.pitch, row, column)
+            lay_bare(inner, b.room.rims)
             find_edges(inner, edges, first + row, left + column)
         iterations, moving = solve(
             convolution(known, rows, columns), known.taps, inner, task, iterations, b.room.rims, edges
