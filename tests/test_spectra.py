@@ -51,6 +51,21 @@ def test_bands_are_those_that_the_lines_cover():
     assert np.isneginf(spectra.band_levels(frequency, np.zeros((2, 501)))[1]).all()
 
 
+NOMINAL = [31.5, 40, 50, 63, 80, 100, 125, 160, 200, 250, 315, 400, 500, 630, 800, 1000, 1250, 1600]
+"""Hz, of the bands with the numbers 15 to 32 of IEC 61260-1."""
+
+
+def test_bands_are_found_by_nominal_and_by_exact_centres_in_any_order():
+    numbers = np.arange(15, 15 + len(NOMINAL))
+    assert spectra.third_octave_numbers(NOMINAL).tolist() == numbers.tolist()
+    wavelengths = [0.4, 0.315, 0.0125, 0.00315]  # m
+    assert spectra.third_octave_numbers(wavelengths).tolist() == [-4, -5, -19, -25]
+    levels = np.array([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]])
+    found = spectra.in_bands(10.0 ** (0.1 * numbers[:6]), [63.0, 31.5, 80.0], levels)
+    assert_allclose(found[0], [2.0, np.nan, np.nan, 1.0, 3.0, np.nan])
+    assert_allclose(found[1], [5.0, np.nan, np.nan, 4.0, 6.0, np.nan])
+
+
 def test_energy_sum():
     assert_allclose(spectra.energy_sum([60.0, 60.0]), 63.0103, atol=1e-4)
     assert_allclose(spectra.energy_sum([[0.0, -np.inf], [10.0, 10.0]], axis=0), [10.41393, 10.0], atol=1e-5)

@@ -246,6 +246,17 @@ def _pulse(transfer: Callable[[Array], Complex], low: float, width: float) -> tu
     return force, pulse
 
 
+def third_octave_numbers(centres: ArrayLike) -> Array:
+    """Numbers n of the one-third octaves 10^(n/10) that hold frequencies, Hz, or wavelengths, m."""
+    return np.rint(10.0 * np.log10(centres))
+
+
+def in_bands(bands: ArrayLike, centres: ArrayLike, values: Array) -> Array:
+    """Values (…, n) of one-third octaves by their centres (n,) in others (b,); NaN in those without one."""
+    same = third_octave_numbers(bands)[:, None] == third_octave_numbers(centres)
+    return np.where(same.any(axis=1), values[..., same.argmax(axis=1)], np.nan)
+
+
 def nominal(centre: float) -> float:
     """Nominal value of a one-third octave's exact centre: 3150 for 3162.28 (IEC 61260-1:2014, annex E)."""
     tenths = round(10.0 * np.log10(centre))

@@ -10,7 +10,7 @@ from asperity.case.form import name_of
 from asperity.case.table_headings import Column
 from asperity.case.tables import TableSource, read_table, refuse_disorder, tells
 from asperity.errors import InputError
-from asperity.spectra import a_weighting
+from asperity.spectra import a_weighting, third_octave_numbers
 from asperity.written_numbers import count_of, rounded
 
 FEWEST = 3
@@ -44,7 +44,7 @@ def band_numbers(table: TableSource, frequency: Array) -> Array:
     """Numbers n of one-third octaves 10^(n/10) Hz, by nominal or exact centres, Hz; rising, each once."""
     refuse_disorder(table, frequency)
     places = 10.0 * np.log10(frequency)
-    numbers = np.rint(places)
+    numbers = third_octave_numbers(frequency)
     allowed = "centres of one-third octaves that rise, each once, as 100, 125, 160"
     if (off := np.abs(places - numbers) > BAND_SHIFT).any():
         received = f"a frequency of {frequency[off][0]:g} Hz"

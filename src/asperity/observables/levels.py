@@ -17,6 +17,7 @@ from asperity.observables.decay_rates import keys_of_track, no_track
 from asperity.observables.observable import Collected, Measured, Observable, Predictable, Values
 from asperity.scenes import schema
 from asperity.schema import Entry, spectra
+from asperity.spectra import in_bands
 
 SOUND = "sound pressure level"
 FORCE = "contact force level"
@@ -28,11 +29,7 @@ _BY_CHANCE = 1.0
 
 def levels_in_bands(collected: Collected, name: str, at: Array) -> Array:
     """Levels of a run (..., n) in bands by their centres (n,), Hz; NaN in those that it has not."""
-    bands = collected[f"{name}_band"]
-    held = collected[name]
-    apart = np.abs(np.log10(at[:, None] / bands))
-    nearest = apart.argmin(axis=1)
-    return np.where(apart.min(axis=1) < 0.03, held[..., nearest], np.nan)
+    return in_bands(at, collected[f"{name}_band"], collected[name])
 
 
 def _collect(entry: Entry, tree: DataTree) -> Collected:

@@ -19,7 +19,7 @@ from asperity.errors import InputError
 from asperity.observables import BUILT_IN, decay_rates, observable
 from asperity.observables.observable import Measured, Observable
 from asperity.parameters import FROM_PYTHON
-from asperity.spectra import a_weighting
+from asperity.spectra import a_weighting, third_octave_numbers
 from asperity.text_files import lines_of_cells, number_in, read_text, refuse_decimal_commas
 from asperity.units import quantity, unit_in, unit_in_brackets
 from asperity.written_numbers import count_of, in_a_row, with_article
@@ -101,7 +101,7 @@ def _follow(values: Array) -> bool:
 
 def _numbered(at: Array) -> tuple[Array, Flags]:
     """Numbers of the one-third octaves nearest to frequencies (n,), Hz, and which are centres of none."""
-    numbers = np.rint(10.0 * np.log10(at))
+    numbers = third_octave_numbers(at)
     return numbers, np.abs(10.0 * np.log10(at) - numbers) > 0.06
 
 

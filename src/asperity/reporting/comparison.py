@@ -12,7 +12,7 @@ from asperity.arguments import Array
 from asperity.reporting import data
 from asperity.results import variable
 from asperity.schema import Entry, bearing, contact, provenance, rolling, spectra
-from asperity.spectra import a_weighted_total, level_of
+from asperity.spectra import a_weighted_total, level_of, third_octave_numbers
 
 POINTS_PER_DECADE = 40
 """Wavenumbers at which filters are compared."""
@@ -251,8 +251,9 @@ def _centres(found: xarray.Dataset | xarray.DataArray) -> Array:
 def _placed(found: xarray.DataArray) -> xarray.DataArray:
     """Numbers by the places of their bands, in tenths of decades from 1 Hz."""
     band = found.dims[-1]
-    places = np.rint(10.0 * np.log10(found[band].values)).astype(int)
-    return found.rename({band: "place"}).assign_coords(place=places)
+    return found.rename({band: "place"}).assign_coords(
+        place=third_octave_numbers(found[band].values).astype(int)
+    )
 
 
 def _pieces(tree: xarray.DataTree, entry: Entry) -> Iterator[tuple[str, str, xarray.DataArray]]:

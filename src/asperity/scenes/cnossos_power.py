@@ -10,11 +10,7 @@ from asperity.laws import Role, in_role, names
 from asperity.reference import cnossos
 from asperity.scenes import compute, schema
 from asperity.schema import Values
-from asperity.spectra import (
-    HALF_BAND,
-    a_weighted_total,
-    energy_sum,
-)
+from asperity.spectra import HALF_BAND, a_weighted_total, energy_sum, third_octave_numbers
 from asperity.speeds import SpeedCourse
 from asperity.surfaces import bands, heightmap
 
@@ -105,14 +101,10 @@ def rolling_sound_power(
 
 def _bands(table: Table) -> tuple[Integers, Array]:
     """Numbers n of the bands 10^(n/10), rising, nearest to nominal or exact centres, and their levels."""
-    numbers = _numbers(table[0])
+    numbers = third_octave_numbers(table[0]).astype(np.int64)
     levels = np.asarray(table[1], dtype=float)
     order = np.argsort(numbers)
     return numbers[order], levels[order]
-
-
-def _numbers(centres: ArrayLike) -> Integers:
-    return np.rint(10.0 * np.log10(centres)).astype(np.int64)
 
 
 def standard_power(computed: compute.Computed) -> Values:
@@ -133,7 +125,7 @@ def standard_power(computed: compute.Computed) -> Values:
     _, filtered = _linear(computed, cnossos.contact_filter(contact_filter))
     changes = computed.force_levels - computed.bare_levels
     change = 10.0 * np.log10(np.mean(10.0 ** (changes / 10.0), axis=1))
-    at = np.searchsorted(_numbers(computed.band), _numbers(centres))
+    at = np.searchsorted(third_octave_numbers(computed.band), third_octave_numbers(centres))
     levels = linear + np.where(np.isfinite(change), change, 0.0)[:, None, at]
     power = schema.SOUND_POWER_LEVEL
     standard = schema.CNOSSOS_SOUND_POWER_LEVEL_A

@@ -16,7 +16,7 @@ from asperity.radiation.pass_by import Receiver
 from asperity.reference import cnossos, railways
 from asperity.scenes import compute, schema
 from asperity.schema import Values, spectra
-from asperity.spectra import HALF_BAND, nominal_frequency
+from asperity.spectra import HALF_BAND, in_bands, nominal_frequency, third_octave_numbers
 from asperity.structures.lateral_rail import LateralTrack
 from asperity.structures.track import Track, decay_rate_en15461, decay_rate_of_responses
 from asperity.surfaces.bands import likely_band
@@ -156,15 +156,6 @@ def lateral_rates(keys: TrackKeys, track: LateralTrack, band: Array) -> tuple[Va
         schema.MEASURED_LATERAL_POWER_CHANGE: 10.0 * np.log10(longer),
     }
     return laid_out, np.nan_to_num(longer, nan=1.0)
-
-
-def in_bands(band: Array, centres: Array, values: Array) -> Array:
-    """Values of one-third octaves in bands (b,), both by their centres; NaN in those without one."""
-    numbers, own = (np.rint(10.0 * np.log10(each)) for each in (band, centres))
-    found = np.full(len(band), np.nan)
-    _, at, of = np.intersect1d(numbers, own, return_indices=True)
-    found[at] = values[of]
-    return found
 
 
 def _interpolated(frequency: Array, at: Array, given: NDArray[np.inexact]) -> NDArray[np.inexact]:
@@ -345,9 +336,9 @@ def _of_roughness(over_frequency: xarray.Dataset) -> list[Condition]:
         how = ", by the spectrum that the case states" if np.isfinite(stated).any() else ""
     wavelength, limit = cnossos.rail_roughness("iso3095")
     wavelength, limit = wavelength[likely_band(wavelength)], limit[likely_band(wavelength)]
-    apart = np.abs(np.log10(levels["surface_band"].values[:, None] / wavelength))
-    known = apart.min(axis=0) < 0.03
-    over = np.nan_to_num(of_rail[apart.argmin(axis=0)] - limit, nan=-np.inf)[known]
+    own = levels["surface_band"].values
+    known = np.isin(third_octave_numbers(wavelength), third_octave_numbers(own))
+    over = np.nan_to_num(in_bands(wavelength, own, of_rail) - limit, nan=-np.inf)[known]
     names = [f"{rounded(1e3 * w)} mm" for w in wavelength[known]]
     asked = f"in {known.sum()} of {len(limit)} bands"
     condition = _banded("rail roughness", over, names, ("above", "dB"), f"at most the limit {asked}")

@@ -145,10 +145,6 @@ def _roughness(computed: compute.Computed) -> Values:
     }
 
 
-NEAR = 0.03
-"""Distance in lg λ within which two wavelengths are those of one band."""
-
-
 def stated_levels(case: Any, parts: Sequence[str], wavelength: Array) -> Array:
     """Levels that spectra of a case state of parts of the texture (n, b), dB re 1 µm.
 
@@ -181,8 +177,7 @@ def _stated(spectrum: Any, level: float, wavelength: Array) -> Array:
     if spectrum is None:
         return np.full(len(wavelength), np.nan)
     own, levels, _ = spectrum_levels(spectrum)
-    apart = np.abs(np.log10(wavelength[:, None] / own))
-    return np.where(apart.min(axis=1) < NEAR, levels[apart.argmin(axis=1)] + level, np.nan)
+    return spectra.in_bands(wavelength, own, levels) + level
 
 
 def tones(computed: compute.Computed) -> Values:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from asperity.arguments import Array, ArrayLike, Flags, as_row, require
-from asperity.spectra import HALF_BAND, band_levels, psd
+from asperity.spectra import HALF_BAND, band_levels, psd, third_octave_numbers
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.strip import places_across
 from asperity.surfaces.tiles import Tiling, Waves, closed, deviates, random_of, range_of, start_of
@@ -323,7 +323,7 @@ def range_of_bands(wavelengths: ArrayLike) -> str:
 
 def _wavenumber_bands(wavelengths: ArrayLike, levels_db: ArrayLike) -> tuple[Array, Array, Array, Array]:
     given, levels = (as_row(each) for each in (wavelengths, levels_db))
-    centres = 10.0 ** (np.rint(-10.0 * np.log10(given)) / 10.0)
+    centres = 10.0 ** (-third_octave_numbers(given) / 10.0)
     near = np.abs(given * centres - 1.0) < 0.03  # nominal ones lie within 2.4 % of the exact ones
     right = near.all() and np.unique(centres).size == centres.size
     remedy = "Give each band once by its centre, as 0.1, 0.125, 0.16 m."

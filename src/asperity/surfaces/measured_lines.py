@@ -15,7 +15,7 @@ from scipy import fft
 from asperity.arguments import Array, Flags, Indices, require
 from asperity.errors import CoarseSamplingWarning
 from asperity.reference.cnossos import rail_roughness
-from asperity.spectra import band_levels, psd
+from asperity.spectra import band_levels, in_bands, psd
 from asperity.surfaces.bands import LIKELY_WAVELENGTHS, MICROMETRE, likely_band
 from asperity.surfaces.cleaning import nearly_complete
 from asperity.surfaces.heightmap import HeightMap, Profile
@@ -292,8 +292,7 @@ def third_octaves(lines: Sequence[Profile], *, overwrite: bool = False) -> Third
     wavelength = 1.0 / centres
     nominal, limits = rail_roughness("iso3095")
     nominal, limits = nominal[likely_band(nominal)], limits[likely_band(nominal)]
-    same = np.abs(np.log10(wavelength[:, None] / nominal)) < 0.03
-    limit = np.where(same.any(axis=1), limits[same.argmax(axis=1)], np.nan)
+    limit = in_bands(wavelength, nominal, limits)
     few = np.isfinite(limit).sum() < FEWEST_BANDS
     return None if few else ThirdOctaves(wavelength, before, after, limit)
 

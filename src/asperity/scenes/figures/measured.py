@@ -15,7 +15,7 @@ from asperity.scenes import schema
 from asperity.scenes.figures.sources import WHOLE, Sources, decides, main_sources
 from asperity.schema import Entry, spectra
 from asperity.schema import measured as beside
-from asperity.spectra import a_weighting, nominal_frequency, root_mean_square
+from asperity.spectra import a_weighting, in_bands, nominal_frequency, root_mean_square
 from asperity.units import unit_in_brackets
 from asperity.written_numbers import capital, count_of, rounded
 
@@ -39,10 +39,7 @@ def over_bands(
         if not data.present(tree, entry):
             return
         frequency = data.values(tree, at)
-        band = data.values(tree, spectra.BAND)
-        number = np.rint(10.0 * np.log10(frequency / band[0])).astype(int)
-        inside = (number >= 0) & (number < len(band))
-        found = np.where(inside, data.values(tree, entry)[np.clip(number, 0, len(band) - 1)], np.nan)
+        found = in_bands(frequency, data.values(tree, spectra.BAND), data.values(tree, entry))
         if entry.units == "(m/s)/N":
             found = found / (2.0 * np.pi * frequency)
         if np.isfinite(found).any():

@@ -18,7 +18,7 @@ from asperity.scenes.figures.measured import LOOKS, limit_sentence
 from asperity.scenes.figures.sources import BODIES, RAIL, WHOLE, Sources, decides, main_sources
 from asperity.schema import Entry
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT
-from asperity.spectra import a_weighting, energy_sum
+from asperity.spectra import a_weighting, energy_sum, in_bands
 from asperity.written_numbers import count_of
 
 OWN, OWN_A = schema.RADIATED_POWER_LEVEL, schema.RADIATED_POWER_LEVEL_A
@@ -107,8 +107,7 @@ def _standard_there(tree: DataTree) -> Iterator[Series]:
     """What CNOSSOS-EU has in the bands of the vibration."""
     by_tables = Of(STANDARD, "{source} by CNOSSOS-EU, {law}", "{source}, CNOSSOS-EU", optional=True)
     for series in by_tables(tree):
-        at = np.abs(data.values(tree, BAND)[:, None] / data.values(tree, schema.NOISE_BAND) - 1.0) < 0.01
-        found = np.where(at.any(axis=1), series.values[at.argmax(axis=1)], np.nan)
+        found = in_bands(data.values(tree, BAND), data.values(tree, schema.NOISE_BAND), series.values)
         if np.isfinite(found).any():
             yield Series(series.name, series.units, found, STANDARD, series.label, series.places)
 
