@@ -69,6 +69,8 @@ def test_bands_are_found_by_nominal_and_by_exact_centres_in_any_order():
 def test_energy_sum():
     assert_allclose(spectra.energy_sum([60.0, 60.0]), 63.0103, atol=1e-4)
     assert_allclose(spectra.energy_sum([[0.0, -np.inf], [10.0, 10.0]], axis=0), [10.41393, 10.0], atol=1e-5)
+    assert_allclose(spectra.energy_of([0.0, 10.0, -np.inf]), [1.0, 10.0, 0.0])
+    assert_allclose(spectra.energy_mean([[10.0, 0.0], [10.0, -np.inf]], axis=0), [10.0, -3.0103], atol=1e-4)
     assert np.isneginf(spectra.a_weighting(0.0))
 
 

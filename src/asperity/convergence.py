@@ -22,6 +22,7 @@ from asperity.schema import Entry, Values, bearing, contact, convergence, group,
 from asperity.spectra import (
     HALF_BAND,
     band_levels,
+    energy_of,
     level_of,
     lowest_band,
     nominal_frequency,
@@ -161,7 +162,7 @@ def levels_of(tree: DataTree) -> xarray.Dataset:
     recorded = motion_entry(held)
     motion = np.full(force.shape, np.nan)
     if recorded is not None:
-        power = 10.0 ** (held[recorded.name].values / 10.0)
+        power = energy_of(held[recorded.name].values)
         motion = level_of(power.mean(axis=tuple(range(1, power.ndim - 1))))
     stiffness = tree[contact.WORKING_STIFFNESS.group].attrs.get(contact.WORKING_STIFFNESS.name, np.nan)
     return _laid_out(held[spectra.BAND.name].values, force, motion, stiffness)

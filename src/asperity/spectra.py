@@ -366,9 +366,19 @@ def level_of(energies: ArrayLike) -> Array:
         return 10.0 * np.log10(energies)
 
 
+def energy_of(levels: ArrayLike) -> Array:
+    """Energies over that of the reference of levels, dB: 10^(L/10)."""
+    return np.asarray(10.0 ** (np.asarray(levels, dtype=np.float64) / 10.0))
+
+
 def energy_sum(levels: ArrayLike, axis: int = -1) -> Array:
     """Level of the sum of the energies of levels with one reference, dB: 10 lg Σ 10^(L/10)."""
-    return level_of(np.sum(10.0 ** (np.asarray(levels, dtype=np.float64) / 10.0), axis=axis))
+    return level_of(np.sum(energy_of(levels), axis=axis))
+
+
+def energy_mean(levels: ArrayLike, axis: int = -1) -> Array:
+    """Level of the mean of the energies of levels with one reference, dB."""
+    return level_of(np.mean(energy_of(levels), axis=axis))
 
 
 def a_weighting(frequency: ArrayLike) -> Array:

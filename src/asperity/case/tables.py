@@ -38,7 +38,7 @@ from asperity.parameters import (
     optional,
     outside,
 )
-from asperity.spectra import energy_sum
+from asperity.spectra import energy_mean
 from asperity.structures import support, track_parameters
 from asperity.structures.outline import checked_outline
 from asperity.text_files import lines_in, lines_of_cells, number_or_nan, read_text, refuse_decimal_commas
@@ -121,7 +121,7 @@ def read_levels(table: TableSource) -> tuple[Array, Array]:
     rows = read_table(table, LEVELS, repeated=True)
     wavelength = rows[:, 0]
     levels = rows[:, 1:]
-    level = levels[:, 0] if levels.shape[1] == 1 else energy_sum(levels) - 10.0 * np.log10(levels.shape[1])
+    level = levels[:, 0] if levels.shape[1] == 1 else energy_mean(levels)
     order = np.argsort(-wavelength)
     wavelength = wavelength[order]
     level = level[order]

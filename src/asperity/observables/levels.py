@@ -17,7 +17,7 @@ from asperity.observables.decay_rates import keys_of_track, no_track
 from asperity.observables.observable import Collected, Measured, Observable, Predictable, Values
 from asperity.scenes import schema
 from asperity.schema import Entry, spectra
-from asperity.spectra import in_bands
+from asperity.spectra import energy_mean, in_bands
 
 SOUND = "sound pressure level"
 FORCE = "contact force level"
@@ -100,7 +100,7 @@ def _acceleration(trial: Predictable, measured: Measured) -> Values:
         sensors = np.array(trial.case.rolled_over.sensor_positions)
         apart = np.abs(sensors - measured.places[0])
         return held[apart.argmin()]
-    return 10.0 * np.log10(np.mean(10.0 ** (0.1 * held), axis=0))
+    return energy_mean(held, axis=0)
 
 
 def _read_levels(what: str, reference: str, table: TableSource) -> list[Measured]:

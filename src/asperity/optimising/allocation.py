@@ -10,6 +10,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 from asperity.arguments import Array
 from asperity.errors import ComputationError, InputError
+from asperity.spectra import energy_of
 from asperity.written_numbers import engineering, rounded
 
 SLACK = 1e-6
@@ -80,11 +81,6 @@ class Response:
     def level(self, levels: Array) -> float:
         """10 lg E(L), dB."""
         return float(10.0 * np.log10(self.floor + self.energies(levels).sum()))
-
-
-def energy_of(levels: Array) -> Array:
-    """Mean square of each band, µm², of levels in dB re 1 µm."""
-    return 10.0 ** (levels / 10.0)
 
 
 def rms_of(levels: Array) -> float:

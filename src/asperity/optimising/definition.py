@@ -19,7 +19,7 @@ from asperity.parameters import LENGTH, Choice, ListOf, Number, Origin, Quantity
 from asperity.scenarios import preparing, records
 from asperity.scenes import noise, schema
 from asperity.schema import Entry, spectra
-from asperity.spectra import HALF_BAND, a_weighting, third_octave_bands
+from asperity.spectra import HALF_BAND, a_weighting, energy_of, third_octave_bands
 from asperity.surfaces.bands import band_levels_of
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.written_numbers import count_of, rounded
@@ -48,7 +48,7 @@ class Measure:
 
     def density(self, tree: DataTree, law: str) -> Array:
         """Energy per Hz (f,) relative to the square of its reference, weighted."""
-        weight = 10.0 ** (a_weighting(line_frequencies(tree)) / 10.0) if self.weighted else 1.0
+        weight = energy_of(a_weighting(line_frequencies(tree))) if self.weighted else 1.0
         return weight * self.energy(tree, law)
 
 
@@ -105,7 +105,7 @@ def _sound_power(tree: DataTree, law: str) -> Array:
     for middle, level in zip(centre, power + a_weighting(centre), strict=True):
         inside = np.abs(np.log10(frequency / middle)) <= 0.05
         if force[inside].sum() > 0.0 and np.isfinite(level):
-            density[inside] = 10.0 ** (level / 10.0) * force[inside] / (force[inside].sum() * step)
+            density[inside] = energy_of(level) * force[inside] / (force[inside].sum() * step)
     return density
 
 

@@ -14,7 +14,7 @@ from asperity.arguments import Array, ArrayLike, Complex, require
 from asperity.radiation.pass_by import STEPS, AxleSource, Passage, Receiver, time_weighted
 from asperity.radiation.track import IMPEDANCE, SPEED_OF_SOUND, wavenumber
 from asperity.reference import cnossos
-from asperity.spectra import HALF_BAND
+from asperity.spectra import HALF_BAND, energy_of
 
 AIR_DENSITY = IMPEDANCE / SPEED_OF_SOUND
 """kg/m³."""
@@ -263,7 +263,7 @@ class SoundPath:
 
 def _strength(azimuth: Array, elevation: Array, band: Array) -> Array:
     """Factor of the intensity (b, n) by CNOSSOS-EU."""
-    return 10.0 ** (0.1 * cnossos.directivity(azimuth, elevation, band[:, None]))
+    return energy_of(cnossos.directivity(azimuth, elevation, band[:, None]))
 
 
 def _mean_strength(band: Array) -> Array:

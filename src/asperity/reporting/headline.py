@@ -10,7 +10,7 @@ from asperity.arguments import Array
 from asperity.reporting import data
 from asperity.reporting.tables import OFF, ReportTable, error_on_map, setting_names, setting_numbers
 from asperity.schema import contact, convergence, provenance, rolling
-from asperity.spectra import nominal_frequency
+from asperity.spectra import energy_of, nominal_frequency
 from asperity.written_numbers import capital
 
 IN_RANGE = "in range"
@@ -200,7 +200,7 @@ def deciding_bands(bands: Array, level: Array) -> str:
 
     As ``"the band of 1.6 kHz"``, ``"the bands of 500 Hz and 800 Hz to 1.25 kHz"``.
     """
-    energy = np.nan_to_num(10.0 ** (level / 10.0))
+    energy = np.nan_to_num(energy_of(level))
     loudest = np.argsort(-energy, kind="stable")
     held = np.cumsum(energy[loudest])
     kept = np.sort(loudest[: 1 + int(np.searchsorted(held, MOST * held[-1]))])

@@ -16,7 +16,7 @@ from asperity.errors import InputError
 from asperity.files import together, write_bytes
 from asperity.reporting import data
 from asperity.schema.rolling import CONTACT, CONTACT_FORCE, LAW, SPEED, TIME
-from asperity.spectra import HALF_BAND, a_weighting, band_energies, energy_sum, root_mean_square
+from asperity.spectra import HALF_BAND, a_weighting, band_energies, energy_of, energy_sum, root_mean_square
 from asperity.text_files import write_csv
 from asperity.wave_files import wave_bytes
 from asperity.written_numbers import rounded
@@ -88,7 +88,7 @@ def radiated(force: Array, step: float, centre: Array, level: Array) -> Array:
     density = 2.0 * np.abs(spectrum) ** 2 * step / n
     held = band_energies(frequency, density, centre / HALF_BAND, centre * HALF_BAND)
     gain = np.zeros(len(frequency))
-    for middle, energy, wanted in zip(centre, held, PICOWATT * 10.0 ** (level / 10.0), strict=True):
+    for middle, energy, wanted in zip(centre, held, PICOWATT * energy_of(level), strict=True):
         inside = (frequency >= middle / HALF_BAND) & (frequency < middle * HALF_BAND)
         if energy > 0.0:
             gain[inside] = np.sqrt(wanted / energy)

@@ -14,7 +14,7 @@ from asperity.arguments import Array
 from asperity.reporting import chart, data, panels
 from asperity.reporting.chart import INK, Axis, Boxes, Drawn, Line, Mark, Panel, sequence_styles
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT, FORCE_LEVEL, LAW, START_SHARE
-from asperity.spectra import nominal_length, say_little
+from asperity.spectra import energy_of, level_of, nominal_length, say_little
 from asperity.written_numbers import capital
 
 MOST_PANELS = 6
@@ -285,7 +285,7 @@ def _along(found: xarray.DataArray, key: str, place: Mapping[str, Any]) -> Array
 def _over_places(level: Array) -> Array:
     """Energy mean of levels at several places."""
     one = level.shape[1] == 1
-    return level[:, 0] if one else np.asarray(10.0 * np.log10(np.nanmean(10.0 ** (level / 10.0), axis=1)))
+    return level[:, 0] if one else level_of(np.nanmean(energy_of(level), axis=1))
 
 
 def _places(key: xarray.DataArray) -> Array:

@@ -13,7 +13,7 @@ from asperity.reference import railways
 from asperity.scenes import measured, noise, schema
 from asperity.scenes.measured import measured_passage
 from asperity.schema import Values, spectra
-from asperity.spectra import a_weighting
+from asperity.spectra import a_weighting, energy_of
 
 KEPT_STEP = 0.02
 """Time between levels that are kept, s, where the record is finer: a sixth of the time constant F."""
@@ -39,7 +39,7 @@ def pass_by_group(case: Any, over_frequency: xarray.Dataset, beside: Values | No
     passage = case.passage
     band = over_frequency[spectra.BAND.name].values
     sources = _sources(case, over_frequency, beside or {})
-    weights = 10.0 ** (a_weighting(band) / 10.0)
+    weights = energy_of(a_weighting(band))
     length = max(float(np.max(source.length)) for source in sources)
 
     @cache
@@ -99,7 +99,7 @@ def _sources(case: Any, over_frequency: xarray.Dataset, beside: Values) -> list[
     up = ONE_WAVE / np.maximum(decay, ONE_WAVE / LONGEST)
     found = []
     for name, level in zip(power["radiator"].values.tolist(), np.moveaxis(power.values, 1, 0), strict=True):
-        sent = noise.PICOWATT * np.nan_to_num(10.0 ** (level / 10.0)) / len(case.contacts_behind)
+        sent = noise.PICOWATT * np.nan_to_num(energy_of(level)) / len(case.contacts_behind)
         if name == "wheel":
             found.append(pass_by.AxleSource(sent, 0.0, case.rolling.radius))
         elif name == schema.RAIL_SIDEWAYS:
@@ -110,7 +110,7 @@ def _sources(case: Any, over_frequency: xarray.Dataset, beside: Values) -> list[
             )
             lateral = np.minimum(np.mean(ONE_WAVE / rate, axis=1), float(np.max(up)))
             if (change := schema.MEASURED_LATERAL_POWER_CHANGE.name) in over_frequency:
-                own = lateral * 10.0 ** (0.1 * over_frequency[change].values)
+                own = lateral * energy_of(over_frequency[change].values)
                 lateral = np.where(np.isfinite(own), np.minimum(own, LONGEST), lateral)
             found.append(pass_by.AxleSource(sent, lateral, height["rail"], "lateral"))
         elif name != "total":

@@ -10,7 +10,14 @@ from asperity.laws import Role, in_role, names
 from asperity.reference import cnossos
 from asperity.scenes import compute, schema
 from asperity.schema import Values
-from asperity.spectra import HALF_BAND, a_weighted_total, energy_sum, third_octave_numbers
+from asperity.spectra import (
+    HALF_BAND,
+    a_weighted_total,
+    energy_mean,
+    energy_of,
+    energy_sum,
+    third_octave_numbers,
+)
 from asperity.speeds import SpeedCourse
 from asperity.surfaces import bands, heightmap
 
@@ -88,10 +95,10 @@ def rolling_sound_power(
     wavelength = np.arange(min(n[0] for n, _ in rough), max(n[-1] for n, _ in rough) + 1)
     energy = np.zeros(len(wavelength))
     for at, level in rough:
-        energy[at - wavelength[0]] += 10.0 ** (level / 10.0)
+        energy[at - wavelength[0]] += energy_of(level)
     if contact_filter is not None:
         at, gain = _bands(contact_filter)
-        energy *= 10.0 ** (gain[wavelength - at[0]] / 10.0)
+        energy *= energy_of(gain[wavelength - at[0]])
     energy[energy == 0.0] = np.nan
     place = np.round(10.0 * np.log10(speed) - numbers, 9)  # 10 lg λ
     shared = axles * np.interp(place, wavelength, energy, left=np.nan, right=np.nan)
@@ -124,7 +131,7 @@ def standard_power(computed: compute.Computed) -> Values:
     centres, linear = _linear(computed, None)
     _, filtered = _linear(computed, cnossos.contact_filter(contact_filter))
     changes = computed.force_levels - computed.bare_levels
-    change = 10.0 * np.log10(np.mean(10.0 ** (changes / 10.0), axis=1))
+    change = energy_mean(changes, axis=1)
     at = np.searchsorted(third_octave_numbers(computed.band), third_octave_numbers(centres))
     levels = linear + np.where(np.isfinite(change), change, 0.0)[:, None, at]
     power = schema.SOUND_POWER_LEVEL

@@ -20,6 +20,7 @@ from asperity.spectra import (
     a_weighting,
     averaging_time,
     band_energies,
+    energy_of,
     level_deviation,
     level_of,
 )
@@ -239,7 +240,7 @@ def _deviation(computed: compute.Computed, density: Array, power: Array, values:
     time = averaging_time(len(computed.first.time), case.time_step, segment=computed.segment)
     density = np.concatenate([density, density.sum(axis=1, keepdims=True)], axis=1)
     weighted = np.concatenate([power, power.sum(axis=1, keepdims=True)], axis=1)
-    weighted = weighted * 10.0 ** (a_weighting(band) / 10.0)
+    weighted = weighted * energy_of(a_weighting(band))
     variance = np.zeros(weighted.shape)
     for b, centre in enumerate(band):
         inside = density[..., (frequency >= centre / HALF_BAND) & (frequency < centre * HALF_BAND)]
@@ -266,7 +267,7 @@ def mode_by_mode(case: Any, power: Array, band: Array, *, every: bool) -> Values
     frequency, damping, diameters = np.hstack([np.array([[0.0], [0.0], [1.0]]), own])
     number = np.arange(len(diameters))
     mode = np.append(0, np.repeat(number[1:], np.where(diameters[1:] > 0.0, 2, 1)))
-    weighted = power @ 10.0 ** (a_weighting(band) / 10.0)
+    weighted = power @ energy_of(a_weighting(band))
     summed = np.stack([weighted[:, mode == each].sum(axis=1) for each in number], axis=1)
     return {
         schema.WHEEL_MODE: number,

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from asperity.arguments import Array, ArrayLike, Flags, as_row, require
-from asperity.spectra import HALF_BAND, band_levels, psd, third_octave_numbers
+from asperity.spectra import HALF_BAND, band_levels, energy_of, psd, third_octave_numbers
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.strip import places_across
 from asperity.surfaces.tiles import Tiling, Waves, closed, deviates, random_of, range_of, start_of
@@ -130,7 +130,7 @@ class RangeOfBands:
         held = high * SAMPLES * surface.finest < 1.0
         if not held.any():
             return np.zeros(0)
-        targets = MICROMETRE**2 * 10.0 ** (levels / 10.0)
+        targets = MICROMETRE**2 * energy_of(levels)
         count = math.floor(length * high[held].max() + 0.5) + 1
         return _shared_out(low * length, high * length, targets)[:count]
 

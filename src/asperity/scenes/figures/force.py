@@ -16,7 +16,7 @@ from asperity.scenes import schema
 from asperity.scenes.figures import track
 from asperity.schema import rolling, spectra
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT, CONTACT_FORCE_LEVEL
-from asperity.spectra import energy_sum
+from asperity.spectra import energy_mean
 from asperity.written_numbers import rounded
 
 TO_REFERENCE = spectra.FORCE_LEVEL_DIFFERENCE_TO_REFERENCE
@@ -215,7 +215,7 @@ _LEVELS = Of(CONTACT_FORCE_LEVEL, "{contact}", called={"contact": _names})
 def _mean(tree: DataTree) -> Iterator[Series]:
     """Energy mean of the levels of all contacts."""
     level = np.stack([np.nan_to_num(series.values, nan=-np.inf) for series in _LEVELS(tree)])
-    mean = energy_sum(level, axis=0) - 10.0 * np.log10(len(level))
+    mean = energy_mean(level, axis=0)
     yield Series(MEAN, CONTACT_FORCE_LEVEL.units, mean, None, f"{MEAN} of all", look=(chart.INK, (), 2.0))
 
 

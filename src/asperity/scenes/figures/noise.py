@@ -18,7 +18,7 @@ from asperity.scenes.figures.measured import LOOKS, limit_sentence
 from asperity.scenes.figures.sources import BODIES, RAIL, WHOLE, Sources, decides, main_sources
 from asperity.schema import Entry
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT
-from asperity.spectra import a_weighting, energy_sum, in_bands
+from asperity.spectra import a_weighting, energy_of, energy_sum, in_bands
 from asperity.written_numbers import count_of
 
 OWN, OWN_A = schema.RADIATED_POWER_LEVEL, schema.RADIATED_POWER_LEVEL_A
@@ -393,7 +393,7 @@ def wheel_table(tree: DataTree) -> ReportTable:
     more = [count_of(len(rest), "other")] * (len(rest) > 0)
     names = [f"{frequency[k]:.0f} Hz" if frequency[k] else "rigid motion" for k in shown]
     levels = np.append(level[shown], [energy_sum(level[rest])] * (len(rest) > 0))
-    share = 100.0 * 10.0 ** ((levels - energy_sum(level)) / 10.0)
+    share = 100.0 * energy_of(levels - energy_sum(level))
     columns = {
         "mode at": text_cells(names + more),
         "nodal diameters": number_cells([*diameters[shown], *[np.nan] * len(more)], "{:.0f}"),

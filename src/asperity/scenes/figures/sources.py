@@ -10,7 +10,7 @@ from asperity.arguments import Array
 from asperity.reporting import data
 from asperity.scenes import schema
 from asperity.schema import Entry
-from asperity.spectra import energy_sum
+from asperity.spectra import energy_of, energy_sum
 
 WHOLE, RAIL = "total", "rail"
 SURE = 2.0
@@ -47,7 +47,7 @@ class Sources:
             if known := [name for name in motions if name in self.parts]:
                 levels = np.array([self.parts[name] for name in known])
                 whole = float(energy_sum(levels))
-                share = 10.0 ** (0.1 * (levels - whole))
+                share = energy_of(levels - whole)
                 by_chance = [self.deviation.get(name, 0.0) for name in known]  # of one record: they add up
                 found[body] = whole, float(share @ by_chance)
         return found
