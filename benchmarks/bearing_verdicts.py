@@ -230,7 +230,7 @@ def asked(signal, rate, tones, speed, factor, part, about):
     yield about | basis | {
         "part": part, "sound": part is None, "length": length, "factor": factor, "right": right,
         "named": named, "confidence": found.confidence, "undecided": found.undecided,
-        "otherwise": found.otherwise is not None,
+        "doubted": found.doubted,
     }  # fmt: skip
 
 
@@ -287,7 +287,7 @@ WITH_FEATURES = ("ball", "fault", "fault, shaft not found", "elsewhere")
 def calibrate(rows) -> None:
     """Print coefficients, and how often what is said with a confidence is right, each record by the
     others."""
-    rows = [row for row in rows if not (row["undecided"] or row["otherwise"])]
+    rows = [row for row in rows if not (row["undecided"] or row["doubted"])]
     kinds, weight = sorted({row["kind"] for row in rows}), weights(rows)
     for kind, values in fitted(rows, weight, kinds).items():
         own = [row for row in rows if row["kind"] == kind and (kind in BY_MADE or not row["made"])]

@@ -5,6 +5,7 @@ import importlib
 import json
 import math
 import re
+import tracemalloc
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -440,3 +441,23 @@ def test_a_bearing_is_made_finer_and_asked_what_helps_by_command(monkeypatch):
     page = Path("out/report.html").read_text()
     assert "What helps?" in page
     assert "half as wavy" in page
+
+
+def test_a_signal_of_single_digits_takes_five_times_its_file(monkeypatch):
+    """Eight bytes a number as a sample, and two beside it: what the larger of two files takes more than the
+    other."""
+    monkeypatch.setattr("asperity.ranks.TOGETHER", 2**12)
+    monkeypatch.setattr("asperity.diagnostics.decision.ENOUGH", 3.0)
+    for module in ("decision", "recording"):
+        monkeypatch.setattr(f"asperity.diagnostics.{module}.MOST_SAMPLES", 2**12)
+    peaks = []
+    for samples in (20_000, 200_000, 600_000):  # the first for imports
+        digits = np.random.default_rng(0).integers(0, 10, samples)
+        Path("digits.txt").write_text("\n".join(map(str, digits)) + "\n")
+        tracemalloc.start()
+        try:
+            call("bearing", "6205", "--speed", "1797 1/min", "--signal", "digits.txt", "--rate", "12 kHz")
+            peaks.append(tracemalloc.get_traced_memory()[1])
+        finally:
+            tracemalloc.stop()
+    assert peaks[2] - peaks[1] < 5.0 * 2 * 400_000

@@ -26,6 +26,7 @@ def test_a_long_record_whose_blows_slip_is_read_in_pieces():
 def slow_record(monkeypatch, turns, together, signal, speed=SLOW):
     """Verdict on a record of a slow shaft, in pieces of so many turns, and so many samples together."""
     monkeypatch.setattr("asperity.diagnostics.decision.ENOUGH", turns)
+    monkeypatch.setattr("asperity.ranks.TOGETHER", together)
     for module in ("decision", "recording"):
         monkeypatch.setattr(f"asperity.diagnostics.{module}.MOST_SAMPLES", together)
     return diagnose(signal, RATE, B6205.tones(), speed)

@@ -5,7 +5,7 @@ import pytest
 
 from asperity.diagnostics import diagnose, diagnosis_sentence
 from asperity.diagnostics.foretold import unforetold
-from asperity.diagnostics.missing_samples import filled_in
+from asperity.diagnostics.missing_samples import filled_in, runs_of
 from asperity.diagnostics.phase_jumps import lost_between
 from asperity.diagnostics.recording import Recording
 from asperity.errors import InputError
@@ -155,3 +155,15 @@ def test_a_record_of_gaps_that_leave_too_little_is_refused_with_what_is_left():
         InputError, match=r"duration of the signal: received 0\.0249 s without a gap; allowed: at "
     ):
         diagnose(signal, RATE, TONES, SPEED)
+
+
+@pytest.mark.parametrize("size", [1, 2, 7, 1000])
+@pytest.mark.parametrize("least", [1, 2, 5, 40])
+@pytest.mark.parametrize("share", [0.0, 0.3, 0.9, 1.0])
+def test_runs_of_pieces_are_those_of_the_whole(size, least, share):
+    held = np.random.default_rng(8).random(400) < share
+    first = np.flatnonzero(held & ~np.append(False, held[:-1]))
+    last = np.flatnonzero(held & ~np.append(held[1:], False)) + 1
+    long = last - first >= least
+    found = runs_of((held[at : at + size] for at in range(0, held.size, size)), least)
+    np.testing.assert_array_equal(found, np.column_stack([first[long], last[long]]))

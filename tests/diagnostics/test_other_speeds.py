@@ -138,3 +138,30 @@ def test_a_comb_is_no_deeper_than_its_own_lines_beside_those_of_a_deeper_one():
     assert of_90.depth(90.0, 90.0) == of_90.depth(90.0)
     amplitude[[60, 120, 240]] = 0.3
     assert Prominence.of((0.5 * np.arange(1_000.0), amplitude)).depth(30.0, 90.0) > 0.5
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize(("unlike", "noise", "sure"), [(1.0, 0.3, True), (0.3, 0.1, True), (0.3, 0.3, False)])
+def test_unlike_blows_at_another_speed_are_no_surer_than_even_where_the_shaft_is_not_loud(
+    unlike, noise, sure, seed
+):
+    """A comb of the spin is one more that any comb may be: an inner ring was a ball at half its speed, 97 %
+    sure."""
+    signal = faulty_signal("ball", SPEED, RATE, 2.0, noise=noise, unlike=unlike, shaft=0.1, seed=seed)
+    found = diagnose(signal, RATE, TONES, 0.7 * SPEED)
+    assert [(each.part, each.every) for each in found.parts] == [("ball", 1 if unlike == 1.0 else 2)]
+    assert found.speed == pytest.approx(SPEED, rel=0.01)
+    assert (found.basis.confidence > 0.9, found.confidence > 0.5) == (True, sure)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_flutes_of_an_inner_ring_told_half_the_speed_are_no_ball_that_is_surer_than_even(seed):
+    """Of a 6203 the spin of a ball at half the speed is nearly a turn of the shaft: 97 % sure."""
+    tones = BallBearing.named("6203").tones()
+    draw = np.random.default_rng(seed)
+    how = {"bearing": "6203", "angle": 0.22, "noise": 0.2, "seed": seed}
+    signal = faulty_signal("inner", SPEED, RATE, 2.0, **how)
+    period = int(RATE / (3.6 * SPEED * draw.integers(3, 9)))
+    fluted = signal + sum(draw.uniform(0.3, 1.0) * np.roll(signal, n * period) for n in range(5))
+    found = diagnose(fluted, RATE, tones, 0.5 * SPEED)
+    assert "ball" not in [each.part for each in found.parts] or found.confidence <= 0.5

@@ -40,6 +40,18 @@ def test_multiples_of_a_rub_are_no_part(bearing, factor, part):
         )
 
 
+@pytest.mark.parametrize("factor", [0.95, 1.05])
+@pytest.mark.parametrize("turns", [15, 29])
+def test_multiples_of_a_rub_are_no_part_where_the_speed_is_told_wrong_by_a_little(factor, turns):
+    """Five times the speed of the rub was an inner ring, and the turns of the rub a ball at a fifth of it."""
+    time = TIME[: int(turns / SPEED * RATE)]
+    for seed in range(4):
+        sound = faulty_signal(None, SPEED, RATE, time[-1] + 1.5 / RATE, noise=0.1, shaft=0.0, seed=seed)
+        touched = np.sin(np.pi * SPEED * time) ** 2 > 0.995
+        rub = 2.0 * touched * np.random.default_rng(seed).normal(size=time.size)
+        assert not diagnose(0.3 * sound + rub, RATE, TONES["6205"], SPEED * factor).parts
+
+
 @pytest.mark.parametrize("factor", [0.5, 2.0])
 @pytest.mark.parametrize("struck", [("outer", "6203", 0.6), ("ball", "6205", 0.3), (None, "6203", 0.3)])
 def test_a_rub_at_half_and_at_double_the_speed_is_no_part(factor, struck):

@@ -11,6 +11,7 @@ from asperity.diagnostics.confidence import Basis
 from asperity.diagnostics.diagnosis import (
     CONFIRMED,
     CONTRADICTED,
+    ELSEWHERE,
     EVEN,
     MEASURED,
     NOT_FOUND,
@@ -252,7 +253,7 @@ def decided(
     if unresolved and _agrees(best.speed, told, resolution):
         return _of_parts(bare, unresolved[0], rivals, tones, 0.0)
     if best.support >= SUPPORTED and margin >= ahead and has_own_lines(record, best, tones):
-        basis = Basis("elsewhere", turns, margin, best.support, best.depth)
+        basis = Basis(ELSEWHERE, turns, margin, best.support, best.depth)
         elsewhere = replace(bare, speed=record.speed(best.speed), speed_is=CONTRADICTED, basis=basis)
         return replace(elsewhere, parts=(best,), blows=best.blows)
     if here and _worth(here[0], told) >= _worth(best, told) - AHEAD:
@@ -287,7 +288,8 @@ def _sifted(
     )
     there = seen and not others
     heard = others if seen else ()
-    of_turns = [each for each in struck if of_shaft_or_mains(record, each, told, resolution, seen, heard)]
+    turning = (told, resolution, seen, heard, deepest if once else 0.0)
+    of_turns = [each for each in struck if of_shaft_or_mains(record, each, *turning)]
     struck = [each for each in struck if each not in of_turns]
     seen_at = record.speed(shaft)
     near = [each for each in struck if near_speed(each, told) and record.holds_shaft(told)]

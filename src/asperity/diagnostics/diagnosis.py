@@ -18,8 +18,8 @@ EVEN = 0.5
 Speed = Literal["confirmed", "measured", "unconfirmed", "contradicted"]
 NAMES = {"outer": "outer ring", "inner": "inner ring", "ball": "ball"}
 """Of parts, as people say them."""
-NOT_FOUND = "fault, shaft not found"
-"""Kind of a verdict on a part that no line of the shaft speaks for."""
+NOT_FOUND, ELSEWHERE = "fault, shaft not found", "elsewhere"
+"""Kinds of a verdict on a part that no line of the shaft speaks for, and on one at another speed."""
 CONFIRMED: Speed = "confirmed"
 UNCONFIRMED: Speed = "unconfirmed"
 MEASURED: Speed = "measured"
@@ -113,18 +113,27 @@ class Diagnosis:
 
     @property
     def confidence(self) -> float:
-        """That this is so, 0 to 1: less where another bearing may have the blows; no more than even where the
-        lines fit another speed better, of tones alone, of a part that a rub may hide, and at a speed beyond
-        belief, as no such record is among those that it is calibrated on."""
-        doubted = self.beyond_belief or self.otherwise is not None or bool(self.tones_alone)
-        doubted = doubted or (self.once_in_a_turn and not self.parts) or self.twice_in_a_turn
+        """That this is so, 0 to 1: less where another bearing may have the blows; even at most where that is
+        doubted."""
         sure = self.basis.confidence * (own_share(self.by_chance) if self.may_be_foreign else 1.0)
-        return min(sure, EVEN) if doubted else sure
+        return min(sure, EVEN) if self.doubted else sure
+
+    @property
+    def doubted(self) -> bool:
+        """Whether no such record is among those that confidence is calibrated on.
+
+        Where the lines fit another speed better; of unlike blows at another speed, which any comb may be at
+        some one; of tones alone, of a part that a rub may hide, and at a speed beyond belief.
+        """
+        unlike = self.basis.kind == ELSEWHERE and not self.parts[0].is_sure
+        hidden = (self.once_in_a_turn and not self.parts) or self.twice_in_a_turn
+        better = self.otherwise is not None
+        return better or unlike or hidden or bool(self.tones_alone) or self.beyond_belief
 
     @property
     def twice_in_a_turn(self) -> bool:
         """Whether a comb of a part is that of a shaft which turns twice as fast, as of a rub, as well."""
-        own = (each for each in self.parts if each.support < SURELY)
+        own = (each for each in self.parts if each.support < SURELY or not each.is_sure)
         return any(abs(each.tone - 2.0 * self.told) <= self.resolution for each in own)
 
     @property

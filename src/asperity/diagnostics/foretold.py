@@ -1,9 +1,11 @@
 """Places at which a signal that tones make is not what they foretell: samples lost there, clicks, a knock."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from asperity.arguments import Array
-from asperity.diagnostics.missing_samples import BLOCK, Runs, joined, runs
+from asperity.diagnostics.missing_samples import BLOCK, Mask, Runs, joined, runs_of
 
 ORDER = 11
 """Samples from which the next one is foretold: two for each of five tones, and one for the mean."""
@@ -27,13 +29,14 @@ def unforetold(values: Array, most: float) -> Runs:
     usual = float(np.median([np.abs(np.convolve(part, weights, "valid")) for part in parts]))
     if usual > QUIET * float(np.median(np.abs(parts - np.mean(parts)))):
         return joined([])
-    unlike = np.zeros((2, max(values.size - ORDER, 1)), dtype=bool)
-    limits = np.array([[UNLIKE], [FAINTER]]) * usual
-    for first in range(0, values.size - ORDER, BLOCK):
-        part = values[first : first + BLOCK + ORDER]
-        missed = np.abs(np.convolve(part, weights, "valid"))
-        unlike[:, first : first + missed.size] = missed > limits
-    stretches = joined([(first, last + ORDER) for first, last in runs(unlike[int(unlike[0].any())])])
+
+    def unlike(times: float) -> Iterator[Mask]:
+        parts = (values[first : first + BLOCK + ORDER] for first in range(0, values.size - ORDER, BLOCK))
+        return (np.abs(np.convolve(part, weights, "valid")) > times * usual for part in parts)
+
+    if not any(each.any() for each in unlike(UNLIKE)):
+        return joined([])
+    stretches = joined([(first, last + ORDER) for first, last in runs_of(unlike(FAINTER))])
     return stretches if len(stretches) <= most else joined([])
 
 

@@ -31,6 +31,9 @@ BETTER = 8.0
 """Support by which a speed beside the one given must be better to be taken in its place."""
 DEEP = 0.25
 """Share by which the envelope follows blows that are no shaft's."""
+UNLIKE = 60.0
+"""Support from which on unlike blows are believed as others are: of made machines those that were none had up
+to 49, and balls that one ring strikes harder have some 70 in quiet records."""
 WEAK = 3.0
 """Amplitude over the median from which on lines count that lie where a part has them."""
 
@@ -116,6 +119,12 @@ class Hypothesis:
     def blows(self) -> float:
         """Frequency of the blows, Hz."""
         return self.every * self.tone
+
+    @property
+    def is_sure(self) -> bool:
+        """Whether the shaft speaks clearly enough for it: unlike blows have the comb of a spin, which is one
+        more that any comb may be."""
+        return self.every == 1 or self.support >= UNLIKE
 
     @property
     def score(self) -> float:

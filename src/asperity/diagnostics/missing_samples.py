@@ -1,6 +1,7 @@
 """Samples that are missing where none is marked: held, or filled in by straight lines and cubics."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,15 +33,32 @@ def runs(held: Mask) -> Runs:
     return np.concatenate([first, edges, last]).astype(np.intp).reshape(-1, 2)
 
 
-def begins_run(held: Mask, length: int) -> Mask:
-    """Where a condition (n,) is held by so many in a row: most records have none, and millions of short
-    runs."""
-    done = 1
-    while done < length and held.any():
-        by = min(done, length - done)
-        held = held[: held.size - by] & held[by:]
-        done += by
-    return held if done >= length else np.zeros(1, dtype=bool)
+def runs_of(pieces: Iterable[Mask], least: int = 1) -> Runs:
+    """Those runs of a condition that are held by so many in a row, of pieces of it one after the other.
+
+    Most records have none, and millions of short runs.
+    """
+    found = [joined([])]
+    begun = None
+    first = 0
+    for held in pieces:
+        here = runs(held) + first
+        if begun is not None and held[0]:
+            here[0, 0] = begun
+        elif begun is not None:
+            here = np.insert(here, 0, (begun, first), axis=0)
+        first += held.size
+        begun = int(here[-1, 0]) if held[-1] else None
+        ended = here[: len(here) - held[-1]]
+        found.append(ended[ended[:, 1] - ended[:, 0] >= least])
+    if begun is not None and first - begun >= least:
+        found.append(np.array([[begun, first]]))
+    return np.concatenate(found)
+
+
+def blocks(values: NDArray[Any], size: int = BLOCK) -> Iterator[NDArray[Any]]:
+    """Values (n,), so many at a time."""
+    return (values[first : first + size] for first in range(0, values.size, size))
 
 
 def least_step(values: Array) -> float:
@@ -64,7 +82,8 @@ def filled_in(values: Array, most: float = np.inf) -> Runs:
     found = []
     for order in ORDERS:
         noise = rounding * 2.0 ** (order - 1)
-        for first, last in _long(_small(values, order, 0.0 if order == 1 else noise)):
+        small = _small(values, order, 0.0 if order == 1 else noise)
+        for first, last in runs_of(small, IN_A_ROW):
             behind = last + order
             beside = (
                 values[max(first - IN_A_ROW - order, 0) : first],
@@ -79,20 +98,10 @@ def filled_in(values: Array, most: float = np.inf) -> Runs:
     return stretches[np.array(alike, dtype=float) <= most]
 
 
-def _small(values: Array, order: int, most: float) -> Mask:
-    """Where differences of an order are no larger than so much, (n - order,)."""
-    held = np.zeros(max(values.size - order, 1), dtype=bool)
-    for first in range(0, values.size - order, BLOCK):
-        part = values[first : first + BLOCK + order]
-        held[first : first + part.size - order] = np.abs(np.diff(part, order)) <= most
-    return held
-
-
-def _long(small: Mask) -> Runs:
-    """Runs of a condition that are longer than chance makes them."""
-    found = runs(begins_run(small, IN_A_ROW))
-    found[:, 1] += IN_A_ROW - 1
-    return found
+def _small(values: Array, order: int, most: float) -> Iterator[Mask]:
+    """Where differences of an order are no larger than so much, piece by piece, (n - order,) in all."""
+    parts = (values[first : first + BLOCK + order] for first in range(0, values.size - order, BLOCK))
+    return (np.abs(np.diff(part, order)) <= most for part in parts)
 
 
 def _begins_and_ends(beside: Iterable[Array], order: int, least: float) -> bool:

@@ -8,9 +8,10 @@ import numpy as np
 
 from asperity.arguments import Array, ArrayLike, positive, real_array, require
 from asperity.diagnostics.foretold import unforetold
-from asperity.diagnostics.missing_samples import BLOCK, Mask, Runs, begins_run, filled_in, runs
+from asperity.diagnostics.missing_samples import BLOCK, Mask, Runs, blocks, filled_in, runs, runs_of
 from asperity.diagnostics.phase_jumps import lost_between
 from asperity.diagnostics.pure_tones import beat, tones_alone
+from asperity.ranks import Ranked
 from asperity.spectra import hann_window, quick_length
 from asperity.written_numbers import count_of, rounded
 
@@ -44,10 +45,6 @@ FADED = 0.25
 """Share of a piece at either end that is faded."""
 SELDOM = 0.5
 """Times in a turn at most that something happens which is no blow of a part."""
-SAMPLE = 2**14
-"""Samples that tell near what the median of a record is."""
-NEAR_MIDDLE = (0.48, 0.52)
-"""Shares of these samples between which the median is sought."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,7 +93,7 @@ class Recording:
         clipped, told_clipped = _clipped(whole)
         told = (told_missing, told_stuck, told_straight, told_lost)
         doubts = (*told, _in_stretches(stretches, left_out, rate), told_clipped, _offset(whole))
-        tones = _tones(_between(left_out | np.isnan(measured), measured), rate, clipped > 0.0)
+        tones = _tones(_between(left_out, measured), rate, clipped > 0.0)
         return cls(stretches, tuple(each for each in doubts if each), clipped, tones)
 
 
@@ -220,14 +217,10 @@ def _thinned(
 def _reached(values: Array, mean: float, times: int) -> float:
     """Size that values (n,) have so many times, about a mean."""
     largest = np.zeros(0)
-    for block in _blocks(values, max(BLOCK, times)):
+    for block in blocks(values, max(BLOCK, times)):
         largest = np.concatenate([largest, np.abs(block - mean)])
         largest = np.partition(largest, -times)[-times:] if largest.size > times else largest
     return float(largest.min())
-
-
-def _blocks(values: Array, size: int = BLOCK) -> Iterator[Array]:
-    return (values[first : first + size] for first in range(0, values.size, size))
 
 
 def _given(signal: ArrayLike, rate: float) -> tuple[Array, float]:
@@ -243,8 +236,9 @@ def _given(signal: ArrayLike, rate: float) -> tuple[Array, float]:
 
 
 def _between(left_out: Mask, values: Array) -> list[Array]:
-    """Stretches of values that are not left out."""
-    return [values[first:last] for first, last in runs(~left_out)]
+    """Stretches of values that are not left out, and known."""
+    kept = (~(out | np.isnan(part)) for out, part in zip(blocks(left_out), blocks(values), strict=True))
+    return [values[first:last] for first, last in runs_of(kept)]
 
 
 def _bridged(values: Array) -> tuple[Array, Mask, str]:
@@ -270,8 +264,9 @@ def _bridged(values: Array) -> tuple[Array, Mask, str]:
 def _stands_still(values: Array, rate: float, still: float) -> tuple[Runs, str]:
     """Where values do not move for so long, s, and what is told of that."""
     least = math.ceil(max(still * rate, FEWEST)) - 1 if still < values.size / rate else values.size
-    found = runs(begins_run(values[1:] == values[:-1], least))
-    found[:, 1] += least  # the last of them, which is like the one before it
+    parts = (values[first : first + BLOCK + 1] for first in range(0, values.size - 1, BLOCK))
+    found = runs_of((part[1:] == part[:-1] for part in parts), least)
+    found[:, 1] += 1  # the last of them, which is like the one before it
     if not len(found):
         return found, ""
     first, last = found[np.argmax(found[:, 1] - found[:, 0])]
@@ -298,7 +293,7 @@ def _straight(values: Array, rate: float, turn: float) -> tuple[Runs, str]:
 def _lost(values: Array, left_out: Mask, rate: float, still: float) -> tuple[list[Array], str]:
     """Where, of what is not left out, samples are missing that nothing marks, and what is told of that."""
     turn = min(still * rate, values.size)
-    whole = [each for each in runs(~left_out) if each[1] - each[0] >= HOLDS_TONES]
+    whole = runs_of((~part for part in blocks(left_out)), HOLDS_TONES)
     jumps = list[Array]()
     other = list[Array]()
     for first, last in whole:
@@ -365,7 +360,7 @@ def _at_the_end(values: Array, end: float, reach: float) -> tuple[int, int]:
     farther away than `BELOW`."""
 
     def shares() -> Iterator[Array]:
-        return (np.abs(end - block) / reach for block in _blocks(values))
+        return (np.abs(end - block) / reach for block in blocks(values))
 
     here = sum(int((share <= AT_THE_END).sum()) for share in shares())
     next_step = min(float(share[share > AT_THE_END].min(initial=1.0)) for share in shares()) + AT_THE_END
@@ -375,14 +370,9 @@ def _at_the_end(values: Array, end: float, reach: float) -> tuple[int, int]:
 
 
 def _median(values: Array) -> float:
-    """Median of values (n,); of a long record only those near it are held beside it."""
-    every = values[:: values.size // SAMPLE + 1]
-    low, high = np.quantile(every, NEAR_MIDDLE)
-    below = sum(int((block < low).sum()) for block in _blocks(values))
-    near = np.sort(np.concatenate([block[(block >= low) & (block <= high)] for block in _blocks(values)]))
-    first = (values.size - 1) // 2 - below
-    last = values.size // 2 - below
-    return float(near[[first, last]].mean() if 0 <= first <= last < near.size else np.median(values))
+    """Median of values (n,)."""
+    ranked = Ranked([values])
+    return float(ranked.between((ranked.count - 1) // 2, ranked.count // 2 + 1).mean())
 
 
 def _percent(share: float) -> str:
@@ -392,7 +382,7 @@ def _percent(share: float) -> str:
 def _offset(values: Array) -> str:
     """What is told of a mean that is large beside what moves."""
     mean = float(values.mean())
-    squares = sum(float(np.square(block - mean).sum()) for block in _blocks(values))
+    squares = sum(float(np.square(block - mean).sum()) for block in blocks(values))
     rest = float(np.sqrt(squares / values.size))
     if abs(mean) < OFFSET * rest:
         return ""

@@ -24,6 +24,8 @@ MAINS = (50.0, 60.0, 100.0, 120.0)
 """Hz, at which motors and inverters hum."""
 AS_HIGH = 0.7
 """Share of the height of a line that others have which are one comb with it."""
+AS_HIGH_AS_RUB = 0.85
+"""The same of the lines of a rub that is not where the speed says: side bands of an inner ring have 0.75."""
 AS_CLEAR = 0.8
 """Share of the support of a part's speed that the speed of a rub has whose multiples look like the part."""
 SURELY = 25.0
@@ -88,21 +90,24 @@ def of_shaft_or_mains(
     resolution: float,
     seen: bool,
     others: tuple[float, ...] = (),
+    rub: float = 0.0,
 ) -> bool:
     """Whether blows are those of a shaft with the speed given, as of a coupling or a fan, or with one of
-    others that have its lines, or of the mains.
+    others that have its lines, or those of a rub near that speed, or of the mains.
 
     Multiples of its speed are the shaft's where its lines are seen; of a half and a third of it, as of what
     is loose, the loud lines are those of the shaft.
     """
     if any(_of_turns(record, each, speed) for speed in (told, each.speed, *others)):
         return True
+    if rub and _of_turns(record, each, rub, AS_HIGH_AS_RUB):
+        return True
     double = [speed for speed in others if _is_double(speed, told)]
     if each.support < SURELY and any(abs(each.tone - speed) <= resolution for speed in double):
         return True
     if near_speed(each, told):
         return False
-    if is_turn(each.tone, told, resolution):
+    if is_turn(each.tone, told, resolution) or (rub and is_turn(each.tone, rub, resolution)):
         return each.support < SURELY
     lines = (round(each.tone / told) * told, *MAINS) if seen else MAINS
     return min(abs(each.tone - line) for line in lines) <= 0.5 * resolution
@@ -123,7 +128,7 @@ def is_turn(tone: float, told: float, resolution: float) -> bool:
     return min(abs(tone - told / times) for times in (1, *TIMES)) <= resolution
 
 
-def _of_turns(record: BearingRecord, each: Hypothesis, speed: float) -> bool:
+def _of_turns(record: BearingRecord, each: Hypothesis, speed: float, as_high: float = AS_HIGH) -> bool:
     """Whether the tone of a part is a multiple of a shaft's speed, whose own lines are as high: of a rub.
 
     Of a part that has nearly such a tone, lines of the shaft are clearer where the part has them.
@@ -136,4 +141,4 @@ def _of_turns(record: BearingRecord, each: Hypothesis, speed: float) -> bool:
         return False
     view = max(record.envelopes, key=lambda view: view.depth(each.tone))
     own, turned = (view.lines_of(tone)[1] for tone in (each.tone, each.tone / order))
-    return bool(own.size and turned.size > 1 and turned[: min(order - 1, 2)].min() >= AS_HIGH * own[0])
+    return bool(own.size and turned.size > 1 and turned[: min(order - 1, 2)].min() >= as_high * own[0])
