@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Iterator
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -220,23 +219,15 @@ class BearingUnderLoad(AnyCase):
         return f"{element} bearing{name} at {span_of(self.speed, 60.0)} 1/min"
 
     @cached_property
-    def _at_rest(self) -> tuple[LoadedBearing, list[Warning | str]]:
-        speed = self.speed if self.centrifugal else 0.0
-        with PhysicsWarning.caught() as caught:
-            found = self.bearing.bearing.loaded(self.radial, self.axial, speed=speed, **self.held)
-        return found, [each.message for each in caught]
-
-    @property
     def static(self) -> LoadedBearing:
         """The bearing under its load while it turns, at angles of the cage over the passing of a ball."""
-        return self._at_rest[0]  # what is doubtful of it is told when it is prepared
+        with PhysicsWarning.ignored():  # told when it is prepared
+            return self.loaded()
 
     def loaded(self) -> LoadedBearing:
         """The same with its warnings."""
-        found, doubts = self._at_rest
-        for each in doubts:
-            warnings.warn(each, stacklevel=2)
-        return found
+        speed = self.speed if self.centrifugal else 0.0
+        return self.bearing.bearing.loaded(self.radial, self.axial, speed=speed, **self.held)
 
     @property
     def tilts(self) -> dict[str, float]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Self
 
 import numpy as np
@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 LEAST = 1e-6
 """N, of what holds a ball between arches: less is none."""
+PLANE = np.eye(2)
+"""Across which a ball moves: radially and axially."""
 STEPS = 24
 """Angles of the cage over the passing of a ball."""
 SPEEDS = 14
@@ -248,18 +250,24 @@ def load_distribution(
     return found
 
 
+def _length(stretch: Array) -> Array:
+    """Lengths (…) of stretches (…, 2): of two components, `numpy.linalg.norm` takes three times as long."""
+    radial, axial = stretch[..., 0], stretch[..., 1]
+    return np.asarray(np.sqrt(radial * radial + axial * axial))
+
+
 def _link(stretch: Array, length: float, constant: float) -> tuple[Array, Array, Array, Array]:
     """Energy, force (2), and stiffness (2, 2) of contacts that hold two centres at a length; and the load.
 
     They are Hertzian: the energy 0.4 K δ^2.5 of the stretch (…, 2), radial and axial, beyond the length.
     """
-    distance = np.linalg.norm(stretch, axis=-1)
+    distance = _length(stretch)
     normal = stretch / distance[..., None]
     overlap = np.maximum(distance - length, 0.0)
     load = constant * overlap**1.5
     across = (load / distance)[..., None, None]
     along = (1.5 * constant * np.sqrt(overlap))[..., None, None] - across
-    stiffness = along * normal[..., :, None] * normal[..., None, :] + across * np.eye(2)
+    stiffness = along * normal[..., :, None] * normal[..., None, :] + across * PLANE
     return 0.4 * constant * overlap**2.5, load[..., None] * normal, stiffness, load
 
 
@@ -282,22 +290,30 @@ class _Balls:
         of = self.bearing
         return (of.outer_conformity - 0.5) * of.ball_diameter, of.outer_contact.stiffness_constant
 
-    def links(self, stretch: Array, ring: str) -> tuple[Array, Array, Array, Array, Array]:
-        """What contacts with a ring hold along a stretch (…, 2) of ball and groove: all flanks together.
-
-        Energy, force (2) and stiffness (2, 2), as of `_link`; and loads and angles of the k contacts.
-        """
+    def _flanks(self, stretch: Array, ring: str) -> list[tuple[Array, Array, Array, Array]]:
+        """What each contact with a ring holds along a stretch (…, 2) of ball and groove, as of `_link`."""
         of = self.bearing
         length, constant = self.inner if ring == "inner" else self.outer
-        offset = of.arches[ring == "outer"].offset if of.arches else 0.0
-        sides = (offset, -offset) if of.arches else (0.0,)
-        found = [_link(stretch + np.array([0.0, side]), length, constant) for side in sides]
+        if not of.arches:
+            return [_link(stretch, length, constant)]
+        offset = of.arches[ring == "outer"].offset
+        return [_link(stretch + np.array([0.0, side]), length, constant) for side in (offset, -offset)]
+
+    def held(self, stretch: Array, ring: str) -> tuple[Array, Array, Array]:
+        """Energy, force (2) and stiffness (2, 2) of all contacts with a ring together."""
+        (energy, force, stiffness, _), *others = self._flanks(stretch, ring)
+        for more_energy, more_force, more_stiffness, _ in others:
+            energy, force, stiffness = energy + more_energy, force + more_force, stiffness + more_stiffness
+        return energy, force, stiffness
+
+    def contacts(self, stretch: Array, ring: str) -> tuple[Array, Array]:
+        """Loads and angles (…, k) of the contacts with a ring; NaN of those that do not touch."""
+        found = self._flanks(stretch, ring)
         angles = [
             np.where(load > 0.0, np.arctan2(force[..., 1], force[..., 0]), np.nan)
             for _, force, _, load in found
         ]
-        energy, force, stiffness = (np.sum([each[i] for each in found], axis=0) for i in range(3))
-        return energy, force, stiffness, np.stack([each[3] for each in found], -1), np.stack(angles, -1)
+        return np.stack([each[3] for each in found], -1), np.stack(angles, -1)
 
     def together(self, stretch: Array) -> tuple[Array, Array, Array, Array]:
         """Energy, force on the inner groove centre, its stiffness, and place of the ball (…, 2)."""
@@ -305,7 +321,7 @@ class _Balls:
             return self._between(stretch, *self._on_flanks(stretch))
         series = self.bearing.series_stiffness
         energy, force, stiffness, load = _link(stretch, self.bearing.groove_distance, series)
-        normal = stretch / np.linalg.norm(stretch, axis=-1)[..., None]
+        normal = stretch / _length(stretch)[..., None]
         length, constant = self.outer
         ball = (length + (load / constant) ** (2.0 / 3.0))[..., None] * normal
         if self.lift == 0.0:
@@ -332,7 +348,7 @@ class _Balls:
         for side in (1.0, -1.0):
             line = stretch + np.array([0.0, side * (inner + outer)])
             load = _link(line, of.groove_distance, of.series_stiffness)[3]
-            normal = line / np.linalg.norm(line, axis=-1)[..., None]
+            normal = line / _length(line)[..., None]
             place = (length + (load / constant) ** (2.0 / 3.0))[..., None] * normal
             place = place - np.array([0.0, side * outer])
             ball = ball + load[..., None] * place
@@ -343,17 +359,17 @@ class _Balls:
     def _between(self, stretch: Array, start: Array, largest: float) -> tuple[Array, Array, Array, Array]:
         """As `together`, with balls looked for from some places on (…, 2), under loads up to one, N."""
         ball, _ = least_energy(lambda at: self._apart(stretch, at), start, 0.1 * largest, "balance of a ball")
-        energy, force, inner, *_ = self.links(stretch - ball, "inner")
-        outer = self.links(ball, "outer")
+        energy, force, inner = self.held(stretch - ball, "inner")
+        outer = self.held(ball, "outer")
         held = inner + outer[2]
         ridge = 1e-12 * np.trace(held, axis1=-2, axis2=-1) + 1e-9
-        condensed = inner - inner @ np.linalg.solve(held + ridge[..., None, None] * np.eye(2), inner)
+        condensed = inner - inner @ np.linalg.solve(held + ridge[..., None, None] * PLANE, inner)
         return energy + outer[0] - self.lift * ball[..., 0], force, condensed, ball
 
     def _apart(self, stretch: Array, ball: Array) -> tuple[Array, Array, Array]:
         """Energy of balls at some places, its gradient and Hessian."""
-        inner = self.links(stretch - ball, "inner")
-        outer = self.links(ball, "outer")
+        inner = self.held(stretch - ball, "inner")
+        outer = self.held(ball, "outer")
         gradient = outer[1] - inner[1] - self.lift * np.array([1.0, 0.0])
         return inner[0] + outer[0] - self.lift * ball[..., 0], gradient, inner[2] + outer[2]
 
@@ -369,7 +385,14 @@ def _moved(azimuth: Array) -> Array:
 
 def _solved(bearing: BallBearing, radial: float, axial: float, speed: float, angles: Array) -> LoadedBearing:
     """The inner ring in balance at each angle of the cage."""
-    azimuth = bearing.azimuths(angles)
+    return _balanced(bearing, radial, axial, speed, tuple(angles.tolist()))
+
+
+@lru_cache(maxsize=64)  # of cases that are read one after the other, most have the load of another one
+def _balanced(
+    bearing: BallBearing, radial: float, axial: float, speed: float, angles: tuple[float, ...]
+) -> LoadedBearing:
+    azimuth = bearing.azimuths(np.array(angles))
     moved = _moved(azimuth)
     A = bearing.groove_distance
     load = np.array([radial, 0.0, axial])
@@ -397,9 +420,11 @@ def _solved(bearing: BallBearing, radial: float, axial: float, speed: float, ang
     ring, imbalance = least_energy(energy_of, start, max(scale, lift), "balance of the inner ring")
     stretch = stretched(ring)
     ball = balls.together(stretch)[3]
-    inner = balls.links(stretch - ball, "inner")
-    outer = balls.links(ball, "outer")
-    found = azimuth, ring, inner[3], outer[3], inner[4], outer[4], energy_of(ring)[2]
+    inner_loads, inner_angles = balls.contacts(stretch - ball, "inner")
+    outer_loads, outer_angles = balls.contacts(ball, "outer")
+    found = azimuth, ring, inner_loads, outer_loads, inner_angles, outer_angles, energy_of(ring)[2]
+    for each in found:
+        each.setflags(write=False)
     return LoadedBearing(bearing, radial, axial, speed, *found, imbalance)
 
 

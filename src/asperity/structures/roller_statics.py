@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -332,7 +333,22 @@ def _solved(
 
     A shaft that gives way has a tilt where no moment acts, and a stiffness against another one, N m/rad.
     """
-    azimuth = bearing.azimuths(angles)
+    told = None if tilt is None else tuple(tilt.tolist())
+    return _balanced(bearing, tuple(load.tolist()), told, speed, tuple(angles.tolist()), tilt_stiffness)
+
+
+@lru_cache(maxsize=64)  # of cases that are read one after the other, most have the load of another one
+def _balanced(
+    bearing: RollerBearing,
+    forces: tuple[float, ...],
+    tilts: tuple[float, ...] | None,
+    speed: float,
+    angles: tuple[float, ...],
+    tilt_stiffness: float,
+) -> LoadedRollers:
+    load = np.array(forces)
+    tilt = None if tilts is None else np.array(tilts)
+    azimuth = bearing.azimuths(np.array(angles))
     moved = _followed(bearing, azimuth)
     lift = bearing.centrifugal_force(speed) * bearing.flung_outwards(bearing.contact_angle)
     inner = bearing.inner_contact
@@ -371,15 +387,12 @@ def _solved(
         contact.pressed(at[..., 0], at[..., 1] / rollers.lever).loads
         for contact, at in zip((inner, outer), overlaps, strict=True)
     ]
-    whole = np.einsum("mzik,mzij,mzjl->mkl", moved, stiffness, moved)
-    return LoadedRollers(
-        bearing, float(load[0]), float(load[2]), speed, azimuth,
-        start / levers,
-        np.einsum("mzik,mzi->mk", moved, pulled)[:, MOMENTS] * levers[MOMENTS],
-        slices[0], slices[1],
-        whole * levers[:, None] * levers,
-        imbalance,
-    )  # fmt: skip
+    moments = np.einsum("mzik,mzi->mk", moved, pulled)[:, MOMENTS] * levers[MOMENTS]
+    whole = np.einsum("mzik,mzij,mzjl->mkl", moved, stiffness, moved) * levers[:, None] * levers
+    found = azimuth, start / levers, moments, slices[0], slices[1], whole
+    for each in found:
+        each.setflags(write=False)
+    return LoadedRollers(bearing, forces[0], forces[2], speed, *found, imbalance)
 
 
 @dataclass(frozen=True)
