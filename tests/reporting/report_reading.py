@@ -7,6 +7,7 @@ import re
 from html.parser import HTMLParser
 
 import numpy as np
+from xarray import DataTree
 
 from asperity.reporting.payload import chart_script
 
@@ -88,9 +89,11 @@ def read_csv(path):
 
 
 def without(tree, *variables):
-    """The result without some variables, each by its group and name."""
-    tree = tree.copy()
-    for group in {group for group, _ in variables}:
-        names = [name for of, name in variables if of == group]
-        tree[group] = tree[group].to_dataset().drop_vars(names)
-    return tree
+    """The result without some variables, each by its group and name: copies of trees take twice as long."""
+    held = {}
+    for group, of in tree.children.items():
+        names = [name for each, name in variables if each == group]
+        held[f"/{group}"] = of.to_dataset(inherit=False).drop_vars(names)
+    left = DataTree.from_dict(held)
+    left.attrs = tree.attrs
+    return left

@@ -7,6 +7,7 @@ import json
 import os
 import time
 from collections.abc import Iterable, Sequence
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -289,14 +290,16 @@ def name_of_run(case: AnyCase) -> str:
         return file_digest(path)
 
     try:
-        return case_key("run", 1, case, program(), os.environ.get("ASPERITY_DEVICE", ""), of_file=digest)
+        device = os.environ.get("ASPERITY_DEVICE", "")
+        return case_key("run", 1, case, asperity.__version__, program(), device, of_file=digest)
     except (InputError, OSError):  # the run will say what is wrong
         return ""
 
 
+@cache
 def program() -> str:
     """SHA-256 over the sources of the program: its version alone says nothing while it is worked on."""
-    digest = hashlib.sha256(asperity.__version__.encode())
+    digest = hashlib.sha256()
     folder = Path(asperity.__file__).parent
     for path in sorted(folder.rglob("*")):
         if path.is_file() and "__pycache__" not in path.parts and path.suffix not in (".pyc", ".part"):
