@@ -46,9 +46,9 @@ class Names:
         """New path of a group, a variable or an attribute."""
         if path in self.paths:
             return self.paths[path]
-        folder, _, name = path.rpartition("/")
+        folder, stroke, name = path.rpartition("/")
         name = self.word(name)
-        return f"{self.of_path(folder)}/{name}" if folder else name
+        return f"{self.of_path(folder)}{stroke}{name}" if folder else f"{stroke}{name}"
 
     def word(self, name: str) -> str:
         """New name of a variable, a dimension or an attribute, wherever it stands."""

@@ -97,6 +97,14 @@ def test_what_is_new_or_changed_its_name_on_purpose_is_no_difference(first, tmp_
     assert added == ["rolling/@seed"]
 
 
+def test_results_of_a_study_that_have_no_groups_are_compared_as_well(tmp_path):
+    held = xr.Dataset({"peak_force": variable("member", np.array([1.0, 2.0]), "N", "Peak force")})
+    studies = [tmp_path / name for name in ("a.nc", "b.nc")]
+    for each in studies:
+        save(xr.DataTree(held), each)
+    assert compare(*studies, {}) == ([], [])
+
+
 def test_draws_of_a_railway_keep_the_mean_energy():
     """What is known of wheels and rails are means of energies: scatter of 4 dB would add 1.8 dB to them."""
     source = SimpleNamespace(generator=np.random.default_rng(2))
