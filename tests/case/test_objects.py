@@ -9,7 +9,17 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 import asperity
-from asperity import BallOnBeam, Bodies, HeightMap, Material, Profile, WheelOnRail, laws
+from asperity import (
+    BallBearing,
+    BallOnBeam,
+    Bodies,
+    HeightMap,
+    Material,
+    Profile,
+    RollerBearing,
+    WheelOnRail,
+    laws,
+)
 from asperity.case.any_case import entries
 from asperity.case.cases import as_case, parse_case, read_case
 from asperity.errors import CaseError, InputError
@@ -411,3 +421,24 @@ def test_all_that_is_wrong_is_said_at_once():
         as_case(with_beam_of(swift))
     with pytest.raises(CaseError, match=r'received \[\].*or numbers: \{ youngs_modulus = "72 GPa"'):
         as_case(with_beam_of([]))
+
+
+RUNS = {
+    "ball-bearing": (BallBearing, {"bearing": {"name": "6205"}, "laws": ["hertz"]}),
+    "roller-bearing": (RollerBearing, {"bearing": {"name": "NU205"}, "laws": ["areal"]}),
+}
+
+
+@pytest.mark.parametrize("kind", RUNS)
+def test_a_bearing_is_built_once_from_its_keys_to_its_result(monkeypatch, kind):
+    model, keys = RUNS[kind]
+    built = []
+    check = model.__post_init__
+    monkeypatch.setattr(model, "__post_init__", lambda self: (built.append(self), check(self)))
+    turning = {"radial": "100 N", "speed": "18000 1/min", "duration": "10 ms", "settling": "2 ms"}
+    case = as_case({"kind": kind, **turning, **keys})
+    asperity.run(case)
+    assert len(built) == 1
+    changed = case.with_(**{"bearing.clearance": "5 um"})
+    assert changed.bearing.bearing.clearance == pytest.approx(5e-6)
+    assert pickle.loads(pickle.dumps(case)).bearing.bearing == case.bearing.bearing  # noqa: S301

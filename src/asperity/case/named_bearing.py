@@ -1,6 +1,7 @@
 """A bearing as a case says it: by its name, or by its dimensions."""
 
 from collections.abc import Iterator, Mapping
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from asperity.case.form import Section
@@ -26,9 +27,9 @@ class NamedBearing(Section):
         """A sentence about the names that there are."""
         raise NotImplementedError
 
-    @property
+    @cached_property
     def bearing(self) -> Any:
-        """The bearing."""
+        """The bearing, built once."""
         given = {name: getattr(self, name) for name in self.DIMENSIONS if getattr(self, name) is not None}
         return self.MODEL(**given) if self.name is None else self.MODEL.named(self.name, **given)
 
