@@ -8,6 +8,7 @@ import xarray as xr
 from report_tree import LAWS, PARTS, laws_in, report_tree, uncertain, with_force
 
 from asperity.laws import spec_of
+from asperity.ranks import Ranked
 from asperity.reporting.chart import Boxes, Field, Line, Note, Rules, as_seen
 from asperity.reporting.data import law_entries, missing
 from asperity.reporting.fit_figures import Compared, fit_figure
@@ -211,7 +212,7 @@ def test_of_a_large_field_means_are_drawn_and_missing_points_stay_missing():
 def test_a_histogram_of_few_heights_is_in_its_panel():
     """Of digits few bins hold all, each higher than the normal distribution: the panel was empty."""
     heights = 1e-9 * np.random.default_rng(0).integers(0, 10, 20_000)
-    panel = height_histogram({"heights": distribution(heights)}, (1e-9, "nm"), beside=False)
+    panel = height_histogram({"heights": distribution(Ranked([heights]))}, (1e-9, "nm"), beside=False)
     steps = panel.marks[0]
     assert panel.y.high >= np.nanmax(steps.y)
 
@@ -219,7 +220,7 @@ def test_a_histogram_of_few_heights_is_in_its_panel():
 def test_the_normal_distribution_of_heights_ends_before_it_is_zero():
     """Of heights with one far from all others it falls below all numbers, which no axis in decades holds."""
     heights = np.append(np.random.default_rng(0).normal(3.0, 0.3, 5_000), 65.0)
-    panel = height_histogram({"heights": distribution(1e-6 * heights)}, (1e-6, "µm"), beside=False)
+    panel = height_histogram({"heights": distribution(Ranked([1e-6 * heights]))}, (1e-6, "µm"), beside=False)
     normal = panel.marks[1].y
     assert np.isnan(normal).any()
     assert np.nanmin(normal) > 1e-9 * np.nanmax(normal)
