@@ -8,6 +8,7 @@ import pytest
 import small_cases
 from asperity.case.cases import as_case
 from asperity.running import run
+from asperity.scenes import computed_bearing
 from asperity.scenes.report import page_of
 
 SMOOTH = {"laws": ["hertz", "linear"], "surface": {"smooth": True}, "settling": "50 ms"}
@@ -55,6 +56,38 @@ def test_perfect_surfaces_of_a_bearing_with_waves_under_an_axial_load_have_no_ve
     np.testing.assert_array_equal(perfect, 0.0)
     assert (waves > 0.0).all()
     assert np.isnan(found["alone_velocity_deviation"].values[0]).all()
+
+
+@pytest.mark.filterwarnings("ignore::asperity.errors.PhysicsWarning")
+@pytest.mark.parametrize(
+    ("keys", "asked", "still"),
+    [
+        ({}, True, True),
+        ({"radial": "1 N"}, False, False),  # balls are not carried alike
+        ({"rotating": "1 N"}, True, False),  # they are at rest alone
+        ({"speed": "1400..1800 1/min in 0.1 s", "duration": "0.15 s"}, False, False),
+        ({"duration": "80 ms"}, False, True),
+    ],
+)
+def test_perfect_surfaces_are_rolled_for_a_turn_of_the_cage_where_nothing_vibrates(
+    monkeypatch, keys, asked, still
+):
+    """All of the record elsewhere."""
+    keys = {"duration": "0.12 s", "laws": ["hertz"], "inner_raceway": {"waviness": "0.2 um"}} | keys
+    case = as_case(PERFECT | keys)
+    rolled = []
+
+    def roll(*given, duration, **others):
+        rolled.append(duration)
+        return roll_bearing(*given, duration=duration, **others)
+
+    roll_bearing = computed_bearing.roll_bearing
+    monkeypatch.setattr(computed_bearing, "roll_bearing", roll)
+    found = run(case)["bearing"]["alone_velocity"].values[0, :2]
+    assert (found == 0.0).all() == still
+    turn = [1.0 / case.kinematics.cage] * asked
+    perfect = turn if asked and still else [*turn, case.duration]
+    assert rolled == pytest.approx([case.duration, *perfect, case.duration])
 
 
 def test_a_force_that_varies_is_none_of_these(runs):

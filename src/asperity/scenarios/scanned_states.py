@@ -62,13 +62,13 @@ def within_scan(
     Parameters
     ----------
     roll : callable
-        Rolls over what is scanned, for a share of the record.
+        Rolls over what is scanned, for a share of the way.
     scanned : sequence
         What is looked up in: a path for each contact that has one of its own, or raceways.
     visited : callable
         Least and largest approach, m, or force, N, of a motion on each of them.
     tried : float
-        Share of the record after which it is asked first whether motion leaves what was scanned.
+        Share of the way after which it is asked first whether motion leaves what was scanned.
 
     Returns
     -------

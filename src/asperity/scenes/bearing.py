@@ -56,7 +56,7 @@ def bearing_result(
     began = time.monotonic()
     computed = compute_bearing(prepared, progress)
     if not brief:
-        computed = replace(computed, alone=rolled_alone(prepared, progress))
+        computed = replace(computed, alone=rolled_alone(computed, progress))
     seen = observed(computed, OF_BEARINGS)
     found = list(bearing_findings(case, computed.runs)) + seen.findings
     warn_of_findings(found)

@@ -14,8 +14,7 @@ def parts_group(computed: ComputedBearing) -> Values:
     rate = computed.case.sampling_rate
     velocities = list[Array]()
     by_chance = list[Array]()
-    for run in computed.alone.values():
-        signal = run.acceleration[0]
+    for signal, *_ in computed.alone.values():
         velocities.append(band_velocities(signal, rate, quantity="acceleration"))
         by_chance.append(band_deviations(signal, rate))
     return {

@@ -42,9 +42,11 @@ from asperity.structures.ring import Ring
 DAMPED = 0.05
 """Share by which the force of a contact that is looked up may lie beside what its damping leaves of it."""
 TRIED = 0.1
-"""Share of the record after which it is asked first whether forces leave what was scanned."""
+"""Share of run-in and record after which it is asked first whether forces leave what was scanned."""
 BY_PARTS = "areal"
 """The law by which parts are run alone: it sees whole contacts, and asks for no scan."""
+ALIKE = 1e-6
+"""Share of their loads by which balls may differ that are carried alike."""
 FORCES = ("inner_force", "outer_force")
 """They begin and end at once, where the filter rings: none is written that is below all that were found."""
 SIGNALS = (*FORCES, "flank_force", "rib_force", "ball_motion", "inner_motion", "outer_motion", "acceleration")
@@ -57,8 +59,8 @@ class ComputedBearing(PreparedBearing, RecordedRuns):
 
     runs: dict[str, RolledBearing]  # records, by law, at the sampling rate of the case
     rolled: dict[str, RolledBearing]  # the same with what rounding leaves of motion where nothing vibrates
-    # these by `BY_PARTS`, by what is kept of all that is on the parts: nothing, or what is on one of them
-    alone: dict[str, RolledBearing] = field(default_factory=dict)
+    # accelerations (sensors, n), m/s², by `BY_PARTS`, with nothing on the parts, or what is on one of them
+    alone: dict[str, Array] = field(default_factory=dict)
 
     @property
     def bearing(self) -> BallBearing:
@@ -72,8 +74,11 @@ class ComputedBearing(PreparedBearing, RecordedRuns):
         return frozenset({"contact_force", "bearing"} | sensed)
 
 
-def compute_bearing(prepared: PreparedBearing, progress: Progress) -> ComputedBearing:
-    """Run the bearing by each law, at the sampling rate of the case."""
+def compute_bearing(prepared: PreparedBearing, progress: Progress, share: float = 1.0) -> ComputedBearing:
+    """Run the bearing by each law, at the sampling rate of the case.
+
+    For a share of run-in and record; by laws that are looked up for all of it.
+    """
     case = prepared.case
     of = prepared.case.bearing.bearing
     ons = raceways_of(prepared, progress)
@@ -85,17 +90,18 @@ def compute_bearing(prepared: PreparedBearing, progress: Progress) -> ComputedBe
     ]
     smooth, load = case.contacts[1]
     averaged = [felt_by(smooth, surface, load) for surface in prepared.balls]
+    time = case.settling + case.duration
     sensors: list[Sensor] = [("outer", angle, "radial") for angle in case.sensors]
 
     def surfaces() -> list[Array]:
         every = (*prepared.raceways, *prepared.balls)
         return [heights for each in every for heights in (each.heights, each.line, each.faults)]
 
-    def once(law: str, inner: Any, outer: Any, share: float = 1.0) -> RolledBearing:
+    def once(law: str, inner: Any, outer: Any, share: float) -> RolledBearing:
         return roll_bearing(
             of, bearing_rings(case), inner, outer,
             speed=case.speed, radial=case.radial, axial=case.axial, rotating=case.rotating,
-            duration=max(share * case.duration, case.step), time_step=case.step,
+            duration=max(share * time - case.settling, case.step), time_step=case.step,
             settling=case.settling, slip=cage_slip(case),
             ball_heights=[] if isinstance(inner, list) else averaged,
             centrifugal=case.centrifugal, sensors=sensors, **case.tilts,
@@ -120,7 +126,7 @@ def compute_bearing(prepared: PreparedBearing, progress: Progress) -> ComputedBe
             run, scanned = within_scan(partial(looking_up, name), scanned, _visited, TRIED)
         else:
             inner, outer = laid(case, [of[name] for of in laws_of])
-            run = once(name, inner, outer)
+            run = once(name, inner, outer, share)
         every = case.steps_per_sample
         signals: dict[str, Any] = {each: thinned(getattr(run, each), every) for each in SIGNALS}
         signals |= {each: np.maximum(signals[each], getattr(run, each).min()) for each in FORCES}
@@ -129,9 +135,12 @@ def compute_bearing(prepared: PreparedBearing, progress: Progress) -> ComputedBe
     return ComputedBearing(**vars(prepared), runs=runs, rolled=found)
 
 
-def rolled_alone(prepared: PreparedBearing, progress: Progress) -> dict[str, RolledBearing]:
-    """Run the bearing by `BY_PARTS` with what is on each part alone, and on none; none if nothing is."""
-    case = prepared.case
+def rolled_alone(computed: ComputedBearing, progress: Progress) -> dict[str, Array]:
+    """Accelerations (sensors, n), m/s², by `BY_PARTS` with what is on each part alone, and on none.
+
+    None at all if nothing is on any.
+    """
+    case = computed.case
     textured = [key for key in map(case.called, ON) if getattr(case, key).given()]
     if not textured:
         return {}
@@ -143,8 +152,28 @@ def rolled_alone(prepared: PreparedBearing, progress: Progress) -> dict[str, Rol
         others = case.with_(laws=[BY_PARTS], **{key: None for key in textured if key != kept})
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", PhysicsWarning)  # of the whole bearing it has been warned
-            found[name] = compute_bearing(prepare_bearing(others), progress).runs[BY_PARTS]
+            part = prepare_bearing(others)
+            if kept is None and _stands_still(part, progress):
+                found[name] = np.zeros_like(computed.first.acceleration)
+            else:
+                found[name] = compute_bearing(part, progress).runs[BY_PARTS].acceleration
     return found
+
+
+def _stands_still(prepared: PreparedBearing, progress: Progress) -> bool:
+    """Whether nothing vibrates in a bearing of perfect surfaces, as one turn of the cage shows.
+
+    All that happens there happens again in each turn at a steady speed. It is asked where all balls are
+    carried alike.
+    """
+    case = prepared.case
+    turn = 1.0 / abs(case.kinematics.cage)
+    loads = case.static.inner_load, case.static.outer_load
+    unlike = any(np.ptp(each) > ALIKE * each.max() for each in loads)
+    if unlike or isinstance(case.speed, SpeedCourse) or turn >= case.duration:
+        return False
+    share = (case.settling + turn) / (case.settling + case.duration)
+    return not compute_bearing(prepared, progress, share).runs[BY_PARTS].vibrates
 
 
 @dataclass(frozen=True, eq=False)
