@@ -264,6 +264,22 @@ def test_a_foot_by_finite_elements_is_that_of_the_printed_section():
     assert flaps / railway_foot.WAVENUMBERS == pytest.approx(1.0, abs=0.022)
 
 
+def test_sections_are_met_where_no_more_is_left_than_rails_differ_by_and_than_is_asked():
+    """Rails a factor apart in all bands but the last, where they are alike; B3 is met without that band."""
+    apart = {"B1": 2.0, "B2": 1.0, "B3": 1.3, "B4": 3.0, "B5": 3.0}
+    low = np.ones(18)
+
+    def rates(section, *_):
+        return np.array([low, low * 10.0 ** (0.1 * np.append(np.full(17, apart[section]), 0.0))])
+
+    left = {section: np.append(np.full(17, 1.22), 0.0) for section in apart}
+    left["B3"] = np.append(np.full(17, 1.0), 4.0)
+    tried = railway.TriedOnNearest(SimpleNamespace(rates=rates), {})
+    tried.__dict__.update(left={railway.FOOT: left}, in_bays={railway.FOOT: None})
+    row = tried.verdicts().splitlines()[-1]
+    assert row == f"| {railway.FOOT} | 0 | B1 B4 B5 | B1 B3 B4 B5 | B1 B2 B4 B5 | B3 |"
+
+
 def test_the_strongest_relaxation_of_a_pad_loses_what_is_printed_at_most():
     track = railway_supports.with_more(
         railway.tracks_of({"pad_stiffness": 9e8, "pad_damping": 0.0})[0],

@@ -302,7 +302,7 @@ def test_loads_lie_within_their_intervals_where_lines_jump(ball_bearing, monkeyp
         held += low <= true <= high
         off.append(abs(np.log(found.values["axial"] / true)))
     assert held >= 36
-    assert np.median(off) < 0.1
+    assert np.median(off) < 0.06
 
 
 def test_an_interval_reaches_to_all_loads_that_meet_the_lines(ball_bearing, ran):
@@ -322,9 +322,9 @@ def test_an_interval_reaches_to_all_loads_that_meet_the_lines(ball_bearing, ran)
     values = np.full(3, passed(case.with_(axial="100 N"))[bearing.ENVELOPE][0, 0])
     found = asperity.fit(case, Measured("envelope line", at, values, uncertainty=1.0), ["axial"])
     low, high = found.intervals["axial"]
-    assert 88.0 < low < 100.0  # what 1.2 dB allow, 95 N and 420 N, and half a step of 10 %
-    assert 400.0 < high < 445.0
-    assert len(calls) < 90
+    assert low == pytest.approx(96.0, abs=1.0)  # what 1.13 dB allow, by three lines of 1 dB each
+    assert high == pytest.approx(417.0, abs=4.0)
+    assert len(calls) < 50
 
 
 @pytest.mark.parametrize("trials", [8, pytest.param(200, marks=pytest.mark.long)])
@@ -344,18 +344,17 @@ def test_contact_angles_lie_within_their_intervals(ball_bearing, trials):
 def test_a_search_where_runs_jump_begins_within_a_factor_of_ten(ball_bearing, ran):
     """Limits of a load are twenty e-folds apart: places all over them are loads that nothing carries."""
     calls = ran(jumping_lines)
-    case = ball_bearing.with_(envelope_band=(2e3, 6e3))
+    case = ball_bearing.with_(envelope_band=(2e3, 6e3), radial="20 N")
     at = np.array([50.0, 100.0, 200.0, 300.0])
     values = jumping_lines(case.with_(axial=400.0))[bearing.ENVELOPE][0][at.astype(int) - 1]
-    asperity.fit(case, Measured("envelope line", at, values), starts=4)
+    asperity.fit(case, Measured("envelope line", at, values), ["axial", "radial"], starts=4)
     loads = np.array([each.axial for each in calls])
     apart = np.log(loads[:, None] / loads)
     assert (np.abs(apart - 0.15) < 1e-9).any()  # slopes are taken over more than the jumps
     assert not (np.abs(apart - 0.02) < 1e-9).any()
-    assert loads.min() >= 15.0
-    assert loads.max() <= 2600.0
-    assert loads.min() < 40.0
-    assert loads.max() > 1200.0
+    looked_at = loads[:19]  # the case, and six places for each start but the first
+    assert 15.0 <= looked_at.min() < 40.0
+    assert 1200.0 < looked_at.max() <= 2600.0
     assert observables.observable("envelope line").chance(
         {}, Measured("envelope line", at, values)
     ) == pytest.approx(0.4)
@@ -365,12 +364,12 @@ def test_a_search_where_runs_jump_begins_at_two_places(ball_bearing, ran):
     """At the case and at the best of six loads that are spread about it."""
     told = []
     ran(jumping_lines)
-    case = ball_bearing.with_(envelope_band=(2e3, 6e3))
+    case = ball_bearing.with_(envelope_band=(2e3, 6e3), radial="20 N")
     at = np.array([50.0, 100.0, 200.0, 300.0])
     values = jumping_lines(case.with_(axial=400.0))[bearing.ENVELOPE][0][at.astype(int) - 1]
     data = Measured("envelope line", at, values)
-    asperity.fit(case, data, progress=lambda done, total, message: told.append((total, message)))
-    assert (3, "search for 1 key") in told
+    asperity.fit(case, data, ["axial", "radial"], lambda done, total, message: told.append((total, message)))
+    assert (3, "search for 2 keys") in told
 
 
 def test_the_band_of_the_envelope_that_a_run_chose_stays(ball_bearing, ran):

@@ -24,9 +24,11 @@ from asperity.fitting.free import (
     read_free,
     read_range,
 )
-from asperity.fitting.interval_ends import MOST, Bowl, End
+from asperity.fitting.interval_ends import LIMIT, MOST, Bowl, End
 from asperity.fitting.problem import Problem
+from asperity.fitting.row import NEIGHBOURS, Row, places_of
 from asperity.fitting.search import (
+    FAR,
     FINE,
     ROUGH,
     SCREENED,
@@ -66,12 +68,12 @@ STARTS_OF_JUMPS = 2
 """The same where runs jump as a value is moved, and rise and fall with it."""
 REACH = float(np.log(10.0))
 """On the scale of the search, how far from the case it then begins: a factor of ten."""
-SCANNED = 0.1
-"""On the scale of the search, from one place to the next at which the only key of such a fit is looked at."""
 RIVAL = 1.05
 """Ratio of root mean squares up to which another minimum meets the data as well."""
 NEAR = 0.1
 """On the scale of the search, by which minima are apart at least."""
+LIMITS = {-1: "least", 0: "", 1: "largest"}
+"""What a value on a limit lies on, by `on_limits`."""
 FreeKeys = Sequence[str] | Mapping[str, object] | None
 
 
@@ -234,9 +236,11 @@ def fitted(
     known, before = _known(replace(asked, free=()))
     problem = _with_choices_of_runs(replace(asked, measured=known))
     case = problem.case
-    problem = replace(problem, chance=replace(problem, free=()).chance_of_runs())
     received = f"{count_of(len(chosen), 'free key')} and {count_of(problem.count, 'value')}"
     require(len(chosen) < problem.count, "fit", received, "more values than free keys", "Free fewer keys.")
+    if (row := _row(problem)) is not None:
+        return _told_by_row(case, problem, before, row)
+    problem = replace(problem, chance=replace(problem, free=()).chance_of_runs())
     left_open = list[Undetermined]()
     rough = replace(problem, fine=False)
     places = _starts(problem, count, rough)
@@ -253,8 +257,7 @@ def fitted(
             continue
         left_open.append(least.words)
         if not fewer.free:
-            received = f"data that leave every free key open ({'; '.join(each.words for each in left_open)})"
-            raise InputError("fit", received, "data that tell one of them")
+            raise _all_open(left_open)
         problem = fewer
         minima = held
     runs.most = runs.done + _runs_of_ends(problem)
@@ -271,22 +274,63 @@ def _sought(problem: Problem) -> tuple[Array, Array]:
 
 def _starts(problem: Problem, count: int, rough: Problem) -> list[Array]:
     """Places from which a search begins: the case, and the best of those that are looked at beside."""
-    if scan := _scan(problem):
-        squares = [float(np.sum(rough.residuals(place) ** 2)) for place in scan]
-        best = np.argsort(squares, kind="stable")[: count - 1]
-        return [problem.start, *(scan[number] for number in best)]
     return starts_within(*_sought(problem), problem.start, count, rough.residuals)
 
 
-def _scan(problem: Problem) -> list[Array]:
-    """Places of the only key where runs jump, one beside the other about the case; else none.
-
-    Sums of squares have several minima there: what data allow is told by all of these places.
-    """
+def _places_in_row(problem: Problem) -> Array:
+    """Places (m, 1) of the only key where runs jump, one beside the other about the case; else none."""
     if not problem.jumps or len(problem.free) != 1:
-        return []
+        return np.zeros((0, 1))
     low, high = (float(end[0]) for end in _sought(problem))
-    return list(np.linspace(low, high, round((high - low) / SCANNED) + 1)[:, None])
+    return places_of(low, high)[:, None]
+
+
+def _row(problem: Problem) -> Row | None:
+    """What is left of the data at these, where they can be computed at enough of them."""
+    places = _places_in_row(problem)
+    left = np.array([problem.residuals(place) for place in places]).reshape(len(places), problem.count)
+    computed = np.all(np.abs(left) < FAR, axis=1)
+    if np.count_nonzero(computed) < 2 * NEIGHBOURS:
+        return None
+    return Row(places[computed, 0], (left * problem.uncertainty)[computed])
+
+
+def _told_by_row(case: AnyCase, problem: Problem, before: list[Values], found: Row) -> Fitted:
+    """Lay out what was found of the only key where runs jump."""
+    (free,) = problem.free
+    repeated = problem.stated and any(each.records > 1 for each in problem.measured)
+    met = found.met(problem.of_data, stated=problem.stated, repeated=repeated)
+    if met.ends[1].place - met.ends[0].place > 2.0 * determined.WIDEST:
+        raise _all_open([Undetermined(free, ())])
+    place = np.array([met.place])
+    problem = replace(problem, chance=met.chance, beyond=met.beyond)
+    (end,) = on_limits(place, problem.low, problem.high).tolist()
+    stops = [
+        LIMIT if each.stop and each.place in (problem.low[0], problem.high[0]) else each.stop
+        for each in met.ends
+    ]
+    low, high = (free.end(each.place) for each in met.ends)
+    interval = None if end else (low, high)
+    estimate = Estimate(free, free.outward(met.place), interval, LIMITS[end], (stops[0], stops[1]))
+    return Fitted(
+        case.with_(**problem.changes(place)),
+        case,
+        problem.measured,
+        (estimate,),
+        (),
+        np.eye(1),
+        before,
+        problem.predicted(place),
+        problem.stated,
+        problem.beyond,
+        (),
+    )
+
+
+def _all_open(left_open: Sequence[Undetermined]) -> InputError:
+    """That nothing is left to be fitted."""
+    received = f"data that leave every free key open ({'; '.join(each.words for each in left_open)})"
+    return InputError("fit", received, "data that tell one of them")
 
 
 def _with_choices_of_runs(problem: Problem) -> Problem:
@@ -304,11 +348,13 @@ def _with_choices_of_runs(problem: Problem) -> Problem:
 
 def _most_runs(problem: Problem, starts: int) -> int:
     """Runs of a fit from so many starts at most, the one of the case as it is among them."""
+    chosen = int(any(of.chosen is not None for of in problem.observables))  # then it is run once more
+    if row := len(_places_in_row(problem)):
+        return problem.runs_at_once * (row + 2 + chosen)
     again = RUNS_AGAIN * (1 + (ROUNDS if problem.stated else 0))
-    screened = len(_scan(problem)) or SCREENED * (starts - 1)
+    screened = SCREENED * (starts - 1)
     searched = RUNS * (starts if starts > 1 else 0) + RUNS + again
     held = 2 * len(problem.free) * again  # each key found to be contradicted, then held nevertheless
-    chosen = int(any(of.chosen is not None for of in problem.observables))  # then it is run once more
     places = 1 + chosen + screened + searched + 2 * problem.places_of_slopes + held
     return problem.runs_at_once * places + _runs_of_ends(problem)
 
@@ -470,8 +516,7 @@ def _told(
         found = _interval(problem, bowl, number, float(half[number])) if number in inside else None
         interval = (each.end(found[0].place), each.end(found[1].place)) if found else None
         stops = (found[0].stop, found[1].stop) if found else ("", "")
-        limit = {-1: "least", 0: "", 1: "largest"}[end]
-        estimates.append(Estimate(each, each.outward(at), interval, limit, stops))
+        estimates.append(Estimate(each, each.outward(at), interval, LIMITS[end], stops))
     problem.runs.progress(len(place), len(place), "ends of intervals")
     return Fitted(
         case.with_(**problem.changes(place)),
@@ -489,22 +534,11 @@ def _told(
 
 
 def _interval(problem: Problem, bowl: Bowl, number: int, half: float) -> tuple[End, End]:
-    """Ends of the interval of a value; of a band of roughness as slopes have it, as these take many runs.
-
-    Where runs jump, it reaches beyond each place of the scan that the data allow.
-    """
+    """Ends of the interval of a value; of a band of roughness as slopes have it, as these take many runs."""
     at = float(bowl.place[number])
     if problem.by_run and problem.free[number].band is not None:
         return End(at - half), End(at + half)
-    low = bowl.end(number, -half)
-    high = bowl.end(number, half)
-    most = float(bowl.left @ bowl.left) + bowl.allowed
-    allowed = [float(each[0]) for each in _scan(problem) if np.sum(problem.residuals(each) ** 2) <= most]
-    if allowed and min(allowed) - 0.5 * SCANNED < low.place:
-        low = End(min(allowed) - 0.5 * SCANNED)
-    if allowed and max(allowed) + 0.5 * SCANNED > high.place:
-        high = End(max(allowed) + 0.5 * SCANNED)
-    return low, high
+    return bowl.end(number, -half), bowl.end(number, half)
 
 
 def _rivals(problem: Problem, minima: _Minima, half: Array) -> Iterable[dict[str, float]]:
