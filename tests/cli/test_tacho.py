@@ -1,10 +1,12 @@
 """``asperity bearing --signal --tacho``: records whose speed changes are read over angle; refusals."""
 
 import json
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from asperity.cli.heard import _agreement
 from asperity.diagnostics import Tacho, diagnose
 from asperity.diagnostics.orders import turns_of_pulses
 from asperity.structures.ball_bearing import BallBearing
@@ -69,6 +71,13 @@ def test_what_gave_the_speed_is_told_in_python():
     tones = BallBearing.named("6205").tones()
     assert diagnose(struck(), RATE, tones, 29.0, tacho=Tacho(2)).tacho == Tacho(2)
     assert diagnose(struck(), RATE, tones, 29.0).tacho is None
+
+
+@pytest.mark.parametrize(("how", "apart"), [("measured", False), ("contradicted", True)])
+def test_signals_whose_lines_say_no_speed_do_not_tell_of_unlike_ones(how, apart):
+    by_lines = SimpleNamespace(parts=(), speed=29.0, speed_is="confirmed")
+    other = SimpleNamespace(parts=(), speed=31.0, speed_is=how)
+    assert ("unlike speeds" in _agreement({"a.wav": by_lines, "b.wav": other})) is apart
 
 
 def test_a_steady_speed_smears_nothing():
