@@ -99,15 +99,16 @@ def test_a_kernel_is_compiled_once_until_a_source_changes(folder, module, monkey
     assert fresh(module)[1:] == (0, 1)
 
 
-def test_kernels_are_named_by_how_they_are_lowered_as_well(tmp_path):
+@pytest.mark.parametrize("part", ["lowering.py", "rim_curves.toml"])
+def test_kernels_are_named_by_how_they_are_lowered_and_by_data_beside_them_as_well(tmp_path, part):
     package = Path(options.__file__).parents[1]
     copy = shutil.copytree(package, tmp_path / package.name, ignore=shutil.ignore_patterns("__pycache__"))
     script = "from asperity.kernels.options import SOURCES, __file__; print(SOURCES, __file__)"
     environment = os.environ | {"PYTHONPATH": str(tmp_path)}
     kernels = copy / "kernels"
     assert apart(script, copy, **environment) == f"{options.SOURCES} {kernels / 'options.py'}"
-    lowering = kernels / "lowering.py"
-    lowering.write_text(lowering.read_text() + "\n")
+    changed = kernels / part
+    changed.write_text(changed.read_text() + "\n")
     assert options.SOURCES not in apart(script, copy, **environment)
 
 

@@ -116,6 +116,21 @@ def test_named_sets_name_a_source_for_every_value():
     assert all("thesis prints none" in source for source in Track.named("x2000").sources)
 
 
+def test_numbers_of_a_named_track_are_those_that_its_sources_state():
+    values = {name: value for name, (value, _) in TRACKS["uic60"].items()}
+    young, shear, inertia, area = 210e9, 80.77e9, 3037e-8, 76.7e-4
+    assert values["bending_stiffness"] == young * inertia
+    assert values["shear_stiffness"] == pytest.approx(0.393 * shear * area, rel=1e-15)
+    assert values["rotary_inertia"] == pytest.approx(values["mass_per_length"] / area * inertia, rel=1e-15)
+    supports = {"pad_stiffness": 180e6, "pad_damping": 18e3, "sleeper_mass": 150.0, "sleeper_spacing": 0.6}
+    supports |= {"ballast_stiffness": 40e6, "ballast_damping": 47e3}
+    assert values == {"mass_per_length": 60.2, "rail_loss_factor": 0.02} | supports | {
+        name: values[name] for name in ("bending_stiffness", "shear_stiffness", "rotary_inertia")
+    }
+    assert math.isinf(TRACKS["embedded"]["ballast_stiffness"][0])
+    assert TRACKS["embedded"]["continuous"][0] is True
+
+
 def test_overrides_replace_the_other_kind_of_damping():
     rail = Track.named("nordborg", pad_loss_factor=0.2, sleeper_spacing=0.65)
     assert (rail.pad_damping, rail.pad_loss_factor) == (None, 0.2)
