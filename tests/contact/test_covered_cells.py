@@ -54,6 +54,51 @@ def test_the_stiffness_of_a_ball_follows_hertz_without_steps(offset):
     assert whole.std() > 5.0 * error.std()
 
 
+@pytest.mark.parametrize(("single", "tolerance"), [(False, 1e-12), (True, 1e-5)])
+@pytest.mark.parametrize(("across", "ratio", "height"), [(5, 1.0, 0.0), (9, 0.5, 0.1), (14, 2.0, 0.03)])
+def test_every_cell_at_a_rim_keeps_the_gap_of_the_curves(across, ratio, height, single, tolerance):
+    """Cells are listed and computed by vectors: here one after the other, of the pressure that was found."""
+    half_space, gap = ball_on_cells(across, (0.2, 0.1), ratio)
+    gap += height * np.random.default_rng(across).uniform(-1.0, 1.0, gap.shape)
+    block = half_space.block(-gap, np.zeros_like(gap), np.zeros(1), [1.0], 1, 1e-5, single)
+    half_space.solve_block(block)
+    pressure, found = np.pad(block.pressures[0, 0], 1), block.room.rims
+    overlap = gap < 1.0
+    rows, across_them = (np.flatnonzero(overlap.any(axis=axis)) for axis in (1, 0))
+    first, left = max(int(rows[0]) - 1, 0), max(int(across_them[0]) - 1, 0)
+    columns = min(int(across_them[-1]) + 2, gap.shape[1]) - left
+    lane = 16 if single else 8
+    pitch = max(-(-columns // lane) * lane, columns + 2)
+    number, steep = found.number.tolist()
+    kept = found.kept.reshape(-1, rims.KEPT, rims.CHUNK)
+    known = kept.transpose(1, 0, 2).reshape(rims.KEPT, -1)[:, :steep].astype(float)
+    gaps = np.concatenate([known[rims.GAP], found.flat[steep:number]])
+    listed = {divmod(int(q), pitch): g for q, g in zip(found.cell[:number], gaps, strict=True)}
+    sides = np.divide(half_space.spacing, half_space.modulus)
+    expected = {}
+    for i, j in zip(*np.nonzero(pressure[1:-1, 1:-1]), strict=True):
+        x = pressure[i + 2, j + 1] - pressure[i, j + 1]
+        y = pressure[i + 1, j + 2] - pressure[i + 1, j]
+        step, p = math.hypot(x, y), pressure[i + 1, j + 1]
+        if p < rim_curves.END**2 * step:
+            slant = min(abs(x), abs(y)) / max(abs(x), abs(y))
+            width = step / math.hypot(x / sides[0], y / sides[1])
+            left_over = rim_curves.remaining_gap(math.sqrt(p / step), slant)[0]
+            expected[int(i) - first, int(j) - left] = left_over * step * width
+    assert len(expected) > 4 * across
+    assert number == len(listed)
+    most = tolerance * max(expected.values())
+    assert {cell: listed[cell] for cell in expected} == pytest.approx(expected, rel=0, abs=most)
+    bare = [cell for cell in listed if cell not in expected]
+    assert all(pressure[1 + first + i, 1 + left + j] == 0.0 or abs(listed[i, j]) < most for i, j in bare)
+    own, stiffness = known[rims.OWN], half_space.influence.taps[0]
+    assert (own < 0.0).all()
+    weight = 1.0 / (1.0 - 0.5 * own * stiffness)
+    alone = stiffness * (1.0 / (1.0 - own * stiffness) - weight**2)
+    np.testing.assert_allclose(known[rims.WEIGHT], weight, rtol=tolerance)
+    np.testing.assert_allclose(known[rims.ALONE], alone, rtol=1e3 * tolerance, atol=tolerance * stiffness)
+
+
 @pytest.mark.parametrize("across", [6, 9])
 def test_what_is_told_of_whole_cells_is_about_the_most_that_they_miss(across):
     half_space, gap = ball_on_cells(across, cells="whole")

@@ -54,7 +54,7 @@ SHARED = np.float32(0.5)
 ZERO, ONE, TWO, LARGEST = (np.float32(each) for each in (0.0, 1.0, 2.0, END))
 """Numbers in single precision, which computes in no other's stead."""
 
-CHUNK = 64
+CHUNK = 128
 """Cells at rims that are computed in one go: whole vectors, of which the last is filled up."""
 P, X, Y, UNMET, RATIO, SLANT, WITHIN, COLUMNS = range(8)
 """What is known of the cells of a chunk while it is computed, one number after the other.
@@ -91,7 +91,9 @@ class Rims(NamedTuple):
     across: float  # likewise
     number: NDArray  # (2,), number of cells at rims, and of those whose gap is steep, which come first
     cell: NDArray  # their places in the box
-    kept: NDArray  # what is kept of them, chunk after chunk: each of the numbers, of all cells of the chunk
+    # what is kept of those with a steep gap, chunk after chunk: each number of all its cells
+    kept: NDArray
+    flat: NDArray  # gap that is left in the others, by number, m
     bare: NDArray  # residual of all cells of the box with no gap taken off, m
     marks: NDArray  # of the cells of the box: one for a steep gap, two for another
     eights: NDArray  # eight of them in one number
@@ -106,7 +108,8 @@ def rims(along: float, across: float, size: int, dtype: DTypeLike) -> Rims:
     eights: NDArray = np.zeros(CHUNK * chunks // 8, dtype=np.uint64)
     return Rims(
         along, across, np.zeros(2, dtype=np.int64), np.zeros(size + EIGHT, dtype=np.uint32),
-        aligned(KEPT * CHUNK * chunks, dtype), aligned(size, dtype), eights.view(np.uint8), eights,
+        aligned(KEPT * CHUNK * chunks, dtype), aligned(size + CHUNK, dtype), aligned(size, dtype),
+        eights.view(np.uint8), eights,
         aligned(NUMBERS * CHUNK, dtype), np.zeros(CHUNK, dtype=np.int32), curve_rows(LEFT, dtype),
     )  # fmt: skip
 
@@ -169,7 +172,7 @@ def _at_rim(
     yy = y * y
     step = np.sqrt(xx + yy)
     normal = np.sqrt(xx + elongation * yy)
-    far = max(x, y) + NO_STEP
+    far = max(max(x, y), NO_STEP)
     product = ONE / (step * normal * far)
     per_step = normal * far * product
     width = side * (step * step * far * product)
@@ -214,10 +217,10 @@ def _between(c: NDArray, k: int) -> tuple[float, float]:
 
 
 @compiled(**CALLED, **CONTRACT, **UNCHECKED)
-def _find_gaps(c: NDArray, kept: NDArray, count: int) -> None:
+def _find_gaps(c: NDArray, flat: NDArray, count: int) -> None:
     """Find the gap that is left in the cells of a chunk."""
     for k in range(count):
-        kept[GAP * CHUNK + k] = c[P * CHUNK + k] * _between(c, k)[0]
+        flat[k] = c[P * CHUNK + k] * _between(c, k)[0]
 
 
 @compiled(**CALLED, **CONTRACT, **UNCHECKED)
@@ -260,6 +263,25 @@ def _look(b: Box, rims: Rims, first: int, count: int, level: float) -> None:
         c[UNMET * CHUNK + i] = b.residual[q] - level
 
 
+@compiled(**INNER)
+def _compute(b: Box, rims: Rims, first: int, count: int, level: float) -> int:
+    """Find how rims cross the cells of a chunk, by number; return how many cells its vectors hold."""
+    lane = lanes(b.z)
+    filled = (count + lane - 1) // lane * lane
+    _look(b, rims, first, count, level)
+    _place(rims.chunk, rims.places, filled, rims.along, (rims.along / rims.across) ** 2)
+    for k in range(0, filled, lane):
+        columns(rims.curves, rims.places, k, rims.chunk, COLUMNS * CHUNK + k, CHUNK)
+    return filled
+
+
+@compiled(**INNER)
+def _take(b: Box, rims: Rims, first: int, count: int, gaps: NDArray) -> None:
+    """Take gaps off the residual of cells, by number."""
+    for i in range(count):
+        b.residual[rims.cell[first + i]] -= gaps[i]
+
+
 @compiled(**CALLED)
 def set_rims(b: Box, rims: Rims | None, level: float, stiffness: float) -> None:
     """Find the cells at rims, and take the gap that is left in them off a residual that lacks none.
@@ -274,22 +296,16 @@ def set_rims(b: Box, rims: Rims | None, level: float, stiffness: float) -> None:
         number = _list(rims, len(b.z), 1, steep)
         rims.number[0] = number
         rims.number[1] = steep
-        lane = lanes(b.z)
-        elongation = (rims.along / rims.across) ** 2
-        for first in range(0, number, CHUNK):
-            count = min(CHUNK, number - first)
-            filled = (count + lane - 1) // lane * lane
+        for first in range(0, steep, CHUNK):
+            count = min(CHUNK, steep - first)
             kept = rims.kept[KEPT * first :]
-            _look(b, rims, first, count, level)
-            _place(rims.chunk, rims.places, filled, rims.along, elongation)
-            for k in range(0, filled, lane):
-                columns(rims.curves, rims.places, k, rims.chunk, COLUMNS * CHUNK + k, CHUNK)
-            if first < steep:
-                _find_steep_gaps(rims.chunk, kept, filled, stiffness)
-            else:
-                _find_gaps(rims.chunk, kept, filled)
-            for i in range(count):
-                b.residual[rims.cell[first + i]] -= kept[GAP * CHUNK + i]
+            _find_steep_gaps(rims.chunk, kept, _compute(b, rims, first, count, level), stiffness)
+            _take(b, rims, first, count, kept[GAP * CHUNK :])
+        for first in range(steep, number, CHUNK):
+            count = min(CHUNK, number - first)
+            flat = rims.flat[first:]
+            _find_gaps(rims.chunk, flat, _compute(b, rims, first, count, level))
+            _take(b, rims, first, count, flat)
 
 
 @compiled(**INNER)
@@ -300,13 +316,19 @@ def _place_of(k: int) -> int:
 
 
 @compiled(**INNER)
+def _gap(rims: Rims, k: int) -> float:
+    """Gap that is left in a cell, by number, m."""
+    return rims.kept[_place_of(k) + GAP * CHUNK] if k < rims.number[1] else rims.flat[k]
+
+
+@compiled(**INNER)
 def take_off(b: Box, rims: Rims | None) -> None:
     """Take the gap that is left at rims off a residual."""
     if rims is not None:
         for q in range(len(b.z)):
             rims.bare[q] = b.residual[q]
         for k in range(rims.number[0]):
-            b.residual[rims.cell[k]] -= rims.kept[_place_of(k) + GAP * CHUNK]
+            b.residual[rims.cell[k]] -= _gap(rims, k)
 
 
 @compiled(**INNER)
@@ -316,7 +338,7 @@ def lay_bare(b: Box, rims: Rims | None) -> None:
         for q in range(len(b.z)):
             rims.bare[q] = b.residual[q]
         for k in range(rims.number[0]):
-            rims.bare[rims.cell[k]] += rims.kept[_place_of(k) + GAP * CHUNK]
+            rims.bare[rims.cell[k]] += _gap(rims, k)
 
 
 @compiled(**INNER, **UNCHECKED)
