@@ -115,21 +115,22 @@ SIDE = HEARD | {"sideways": {"contact_place": "5 mm"}}
 
 
 def test_a_lateral_decay_rate_changes_the_rail_sideways_alone(runs):
-    """A quarter of the computed lateral rate from 500 Hz to 1 kHz lets four times the rail radiate."""
+    """From 500 Hz to 1 kHz: the lower it is, the more of the rail radiates."""
     plain = runs(WheelOnRail(**SIDE))
-    track = SIDE["track"] | {"decay_rates": np.column_stack([BAND[5:9], *np.full((2, 4), 1.0)])}
-    expected = runs(WheelOnRail(**SIDE | {"track": track}))["spectra/expected_lateral_decay_rate"]
     own = HammerTest.of_track(WheelOnRail(**SIDE).track.model(), BAND).decay_rate
-    rates = np.column_stack([BAND[5:9], own[5:9], 0.25 * expected[np.isfinite(expected)]])
+    rates = np.column_stack([BAND[5:9], own[5:9], [0.2, 0.5, 1.0, 2.0]])
     tree = runs(WheelOnRail(**SIDE | {"track": SIDE["track"] | {"decay_rates": rates}}))
-    inside = np.isfinite(expected.values)
+    expected = tree["spectra/expected_lateral_decay_rate"].values
+    inside = np.isfinite(expected)
+    more = db(expected[inside] / rates[:, 2])
+    assert np.ptp(more) > 3.0
     gained = tree["spectra/radiated_power_level"] - plain["spectra/radiated_power_level"]
     for part in ("rail", "sleepers", "wheel"):
         assert_allclose(gained.sel(radiator=part)[0].fillna(0.0), 0.0, atol=1e-9)
-    assert_allclose(gained.sel(radiator=schema.RAIL_SIDEWAYS)[0, inside], 20.0 * np.log10(2.0), rtol=1e-9)
+    assert_allclose(gained.sel(radiator=schema.RAIL_SIDEWAYS)[0, inside], more, rtol=1e-9)
     assert not gained.sel(radiator=schema.RAIL_SIDEWAYS)[0, ~inside].any()
     heard = (tree["pass_by/sound_exposure_level"] - plain["pass_by/sound_exposure_level"])[0, :, inside]
-    assert_allclose(heard.sel(radiator=schema.RAIL_SIDEWAYS), 20.0 * np.log10(2.0), rtol=1e-9)
+    assert_allclose(heard.sel(radiator=schema.RAIL_SIDEWAYS), more, rtol=1e-9)
     assert measured_table(tree).head[-1] == "rail sideways / dB"
 
 

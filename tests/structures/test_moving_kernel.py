@@ -15,7 +15,7 @@ from asperity.store import Store
 from asperity.structures import causal_track as module
 from asperity.structures import rail_poles as fitting
 from asperity.structures.causal_track import LEAST_STATIC, causal_track, least_static
-from asperity.structures.moving_kernel import MovingKernel, moving_kernel
+from asperity.structures.moving_kernel import DIED_AWAY, MovingKernel, _Begun, moving_kernel
 from asperity.structures.rail_poles import RailPoles, poles_or_kernel, rail_between, rail_poles
 from refusals import refusals
 
@@ -218,6 +218,23 @@ def test_a_kernel_that_has_not_died_away_is_told(monkeypatch):
     with pytest.warns(CoarseSamplingWarning, match="cut off. Raise the damping or the loss factors of rail"):
         moving_kernel(light, 28.0, 2e-4, positions=2)
     moving_kernel(replace(light, ballast_damping=30e3), 28.0, 2e-4, positions=2)  # silent
+
+
+def test_a_length_in_which_a_rail_rings_on_is_left_after_two_of_its_rows(monkeypatch):
+    """Of 0.12 s, for 0.19 s; one that dies away in the first has all rows of it, each once."""
+    asked, row = [], _Begun.row
+    monkeypatch.setattr(_Begun, "row", lambda begun, start: asked.append(start) or row(begun, start))
+    monkeypatch.setattr("asperity.structures.moving_kernel.thread_count", lambda: 1)
+    found = moving_kernel(VISCOUS, 56.0, 2e-4)
+    assert found.weights.shape == (24, 960)
+    assert np.abs(found.weights).max(axis=1).all()
+    assert asked[:2] == [0, 12]
+    assert 26 <= len(asked) <= 30  # some may have begun meanwhile
+    short = moving_kernel(VISCOUS, 56.0, 2e-4, duration=0.12)
+    assert short.left_over > DIED_AWAY > found.left_over
+    asked.clear()
+    assert moving_kernel(DAMPED, 56.0, 2e-4).weights.shape == (24, 600)
+    assert sorted(asked) == list(range(24))
 
 
 # --- the causal track that stands for loss factors: causality, passivity, and the contact force on it

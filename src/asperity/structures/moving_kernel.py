@@ -81,6 +81,8 @@ MOST_LINES = 10**7
 """Frequencies times bays that differ, of which waves are held at once: five gigabytes."""
 DIED_AWAY = 1e-3
 """Largest value in the last tenth of a kernel, relative to its largest of all, by which it has died away."""
+RINGS = 1.3 * DIED_AWAY
+"""The same above a sleeper and amid a bay alone, where it is largest, by which all of it has surely not."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,8 +110,12 @@ class MovingKernel:
     @property
     def left_over(self) -> float:
         """Largest value in its last tenth, relative to the largest of all."""
-        last = self.weights[:, -max(1, self.weights.shape[1] // 10) :]
-        return float(np.abs(last).max() / np.abs(self.weights).max())
+        return _left_over(self.weights)
+
+
+def _left_over(weights: Array) -> float:
+    last = weights[:, -max(1, weights.shape[1] // 10) :]
+    return float(np.abs(last).max() / np.abs(weights).max())
 
 
 def moving_kernel(
@@ -154,17 +160,19 @@ def moving_kernel(
     described = (track.parameters, speed, time_step, duration, positions, ZONES, SHIFT)
     key = content_key("moving-kernel", *described, *([distance] if distance else []))
 
-    def kernel_of(length: float) -> MovingKernel:
+    def weights_of(length: float, most: float) -> Array | None:
         taps = max(8, round(length / time_step))
         _refuse_size(track, length, ZONES * taps + 1)
-        weights = _weights(HatResponse(track, time_step, taps, ZONES), speed, positions, distance, progress)
-        return MovingKernel(track, speed, time_step, weights, distance)
+        near = HatResponse(track, time_step, taps, ZONES)
+        weights = _weights(near, speed, positions, distance, progress, RINGS if most < np.inf else most)
+        return None if weights is None or _left_over(weights) > most else weights
 
     def make() -> dict[str, Array]:
         length = SHORTEST if duration is None else duration
-        while (kernel := kernel_of(length)).left_over > DIED_AWAY and duration is None and length < LONGEST:
-            length = min(1.6 * length, LONGEST)
-        return {"weights": kernel.weights}
+        longest = LONGEST if duration is None else duration
+        while (weights := weights_of(length, DIED_AWAY if length < longest else np.inf)) is None:
+            length = min(1.6 * length, longest)
+        return {"weights": weights}
 
     kept = made(cache, key, make)
     kernel = MovingKernel(track, speed, time_step, kept["weights"], distance)
@@ -195,25 +203,37 @@ def _refuse_size(track: Track, length: float, lines: int) -> None:
 
 
 def _weights(
-    near: HatResponse, speed: float, positions: int, distance: float, progress: Progress | None
-) -> Array:
-    """All rows of the kernel; near the contact receptances are folded as that response says."""
+    near: HatResponse,
+    speed: float,
+    positions: int,
+    distance: float,
+    progress: Progress | None,
+    most: float,
+) -> Array | None:
+    """All rows of the kernel; near the contact receptances are folded as that response says.
+
+    None where more than `most` is left over of those above a sleeper and amid a bay, of bays that are alike.
+    """
     taps = near.taps
     time_step = near.time_step
     track = near.track
     way = _Way(near, HatResponse(track, time_step, taps, 1), speed, positions, distance)
     weights = np.zeros((track.cell_bays * positions, taps))
     shapes: Shapes = {}
+    told = f"moving kernel of {engineering(taps * time_step, 's', 2)}"
+    first = [0, positions // 2]
+    starts = list(dict.fromkeys([*first, *range(positions)]))
     with ThreadPoolExecutor(thread_count()) as pool:
         for own in range(track.cell_bays):
             begun = _Begun(way, own, shapes)
             shapes = begun.shapes  # of bays that are passed again
-            for start, found in enumerate(pool.map(begun.row, range(positions))):
-                number = own * positions + start
-                weights[number] = found
+            for done, (start, found) in enumerate(zip(starts, pool.map(begun.row, starts), strict=True), 1):
+                weights[own * positions + start] = found
+                if done == len(first) and not track.bays and _left_over(weights[first]) > most:
+                    pool.shutdown(cancel_futures=True)
+                    return None
                 if progress is not None:
-                    length = engineering(taps * time_step, "s", 2)
-                    progress(number + 1, len(weights), f"moving kernel of {length}")
+                    progress(own * positions + done, len(weights), told)
     return weights
 
 
