@@ -182,6 +182,11 @@ def test_linear_acts_in_tension():
     assert curve.first_touch == -np.inf
 
 
+def test_a_piece_that_is_a_square_is_inverted():
+    curve = ForceCurve(np.array([0.0, 1.0]), np.array([[0.0, 1.0, 1.0, 0.0]]), 1.0)
+    assert_allclose(curve.inverse([0.0, 0.75, 2.0, 5.0]), [0.0, 0.5, 1.0, 2.0], atol=1e-15)
+
+
 def test_secant_of_a_quadratic_force_is_the_printed_stiffness():
     s = np.linspace(-3e-6, 5e-6, 9)
     curve = ForceCurve.from_samples(s, 1e12 * (s + 3e-6) ** 2)

@@ -178,7 +178,8 @@ def test_layers_below_the_sleeper_and_what_bends_count_sideways_too():
 
 def test_answers_at_several_places_are_those_of_each():
     x, x0 = np.array([0.1, 0.3, 0.9]), np.array([0.3, 0.1, 0.0])
-    found = RAIL.answers(OMEGA, x, x0, 0.01)
+    found, middle = (RAIL.answers(OMEGA, x, x0, place) for place in (0.01, 0.0))
+    assert_allclose(middle[0, 0], UIC60.receptance(FREQUENCIES, x, x0), rtol=1e-12)
     for n, pair in enumerate(zip(x, x0, strict=True)):
         assert_array_equal(found[:, :, n], RAIL.answers(OMEGA, *pair, 0.01))
 

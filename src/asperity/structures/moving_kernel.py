@@ -230,8 +230,7 @@ def _weights(
             for done, (start, found) in enumerate(zip(starts, pool.map(begun.row, starts), strict=True), 1):
                 weights[own * positions + start] = found
                 if done == len(first) and not track.bays and _left_over(weights[first]) > most:
-                    pool.shutdown(cancel_futures=True)
-                    return None
+                    return None  # rows that have not begun are not computed
                 if progress is not None:
                     progress(own * positions + done, len(weights), told)
     return weights
