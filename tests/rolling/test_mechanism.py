@@ -1,6 +1,7 @@
 """Contacts between any two of bodies and structures: against bodies on a plane, and closed forms."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -227,3 +228,10 @@ test_what_is_no_mechanism_is_refused = refusals(
         r"sides of a contact on a rail: received 1 of signs \[-1.0\]",
     ),
 )
+
+
+def test_a_law_that_python_steps_is_laid_out_for_each_contact():
+    """Its state is that of one contact; here what is laid out are the places themselves."""
+    law = SimpleNamespace(prepare=lambda positions: positions)
+    contacts = [RollingContact(law, lambda steps, at=at: at + np.array(steps), ()) for at in (0.5, 2.5)]
+    np.testing.assert_array_equal(laid_together(contacts, range(3, 4)), [[3.5], [5.5]])
