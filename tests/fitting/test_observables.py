@@ -320,11 +320,13 @@ def test_an_interval_reaches_to_all_loads_that_meet_the_lines(ball_bearing, ran)
     calls = ran(passed)
     case, at = ball_bearing.with_(envelope_band=(2e3, 6e3), axial="120 N"), np.array([50.0, 150.0, 250.0])
     values = np.full(3, passed(case.with_(axial="100 N"))[bearing.ENVELOPE][0, 0])
-    found = asperity.fit(case, Measured("envelope line", at, values, uncertainty=1.0), ["axial"])
+    told, data = [], Measured("envelope line", at, values, uncertainty=1.0)
+    found = asperity.fit(case, data, ["axial"], lambda done, total, message: told.append(message))
     low, high = found.intervals["axial"]
     assert low == pytest.approx(96.0, abs=1.0)  # what 1.13 dB allow, by three lines of 1 dB each
     assert high == pytest.approx(417.0, abs=4.0)
-    assert len(calls) < 50
+    assert 47 < len(calls) <= 50
+    assert any("of at most 50" in message for message in told)
 
 
 @pytest.mark.parametrize("trials", [8, pytest.param(200, marks=pytest.mark.long)])

@@ -1,5 +1,7 @@
 """A row of runs that jump: curves through it, the chance of a record, and where it meets the data."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -120,6 +122,7 @@ def test_a_value_on_its_limit_has_no_interval(track, loud):
     (estimate,) = found.estimates
     assert estimate.limit == "largest"
     assert estimate.interval is None
+    assert found.correlations.size == 0
     assert found.values["track.pad_stiffness"] == pytest.approx(600e6)
 
 
@@ -132,6 +135,13 @@ def test_an_interval_stops_at_a_limit_or_where_the_row_ends(track, loud):
     (further,) = asperity.fit(track, far, {"track.pad_stiffness": (3e6, 3e11)}).estimates
     assert further.stops == ("", "further")
     assert further.interval[1] == pytest.approx(3e9, rel=1e-3)
+
+
+def test_what_a_row_leaves_out_stands_in_the_result(track, loud):
+    off = replace(loud(300e6, SLOPED, uncertainty=0.1), values=SLOPED * np.log10(300e6) + [2.0, 2.0, -2.0])
+    found = asperity.fit(track, off, ["track.pad_stiffness"])
+    assert found.left_out > 1.0
+    assert asperity.fit(track, loud(300e6, SLOPED, uncertainty=0.1), ["track.pad_stiffness"]).left_out == 0.0
 
 
 def test_a_row_that_leaves_its_only_key_open_is_told(track, loud):

@@ -318,7 +318,7 @@ def _told_by_row(case: AnyCase, problem: Problem, before: list[Values], found: R
         problem.measured,
         (estimate,),
         (),
-        np.eye(1),
+        np.eye(int(not end)),
         before,
         problem.predicted(place),
         problem.stated,
