@@ -6,7 +6,7 @@ import numpy as np
 
 from asperity.arguments import Array, Flags, Indices
 
-TOGETHER = 2**18
+TOGETHER = 2**19
 """Values that are put in order together."""
 SAMPLE = 2**10
 """Values that tell where others are cut."""

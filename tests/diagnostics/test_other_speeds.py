@@ -1,5 +1,6 @@
 """Records asked at wrong speeds: what another speed explains as well is not confirmed, nor sure."""
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -152,6 +153,33 @@ def test_unlike_blows_at_another_speed_are_no_surer_than_even_where_the_shaft_is
     assert [(each.part, each.every) for each in found.parts] == [("ball", 1 if unlike == 1.0 else 2)]
     assert found.speed == pytest.approx(SPEED, rel=0.01)
     assert (found.basis.confidence > 0.9, found.confidence > 0.5) == (True, sure)
+
+
+@pytest.mark.parametrize(("noise", "sure"), [(0.1, True), (0.2, False)])
+def test_unlike_blows_twice_in_a_turn_are_no_surer_than_even_where_the_shaft_is_not_loud(noise, sure):
+    """The spin of a ball of a 6203, 1.99 times the speed: a shaft that turns twice as fast would have its
+    comb, and an inner ring asked at half its speed did."""
+    how = {"bearing": "6203", "unlike": 0.3, "noise": noise, "seed": 1}
+    signal = faulty_signal("ball", SPEED, RATE, 2.0, **how)
+    found = diagnose(signal, RATE, BallBearing.named("6203").tones(), SPEED)
+    assert [(each.part, each.every) for each in found.parts] == [("ball", 2)]
+    assert (found.basis.confidence > 0.9, found.confidence > 0.5) == (True, sure)
+    assert ("that rubs would have these lines, too" in diagnosis_sentence(found)) is not sure
+
+
+@pytest.mark.parametrize(
+    ("support", "most"), [(15.0, 0.97 * 0.8 / 0.82), (20.0, 0.97 * 0.8 / 0.802), (60.0, 0.97)]
+)
+def test_of_blows_at_another_speed_that_the_shaft_speaks_for_faintly_another_bearing_may_have_them(
+    support, most
+):
+    """Of those of a bearing alone that was not asked for one in ten has a support of 15 at some speed: they
+    were 97 % sure to be this one's."""
+    found = diagnose(faulty_signal("outer", SPEED, RATE, 2.0, noise=0.1), RATE, TONES, 0.7 * SPEED)
+    assert (found.speed_is, found.basis.kind) == ("contradicted", "elsewhere")
+    supported = replace(found, basis=replace(found.basis, margin=40.0, support=support))
+    assert supported.basis.confidence > 0.969
+    assert supported.confidence == pytest.approx(most, rel=1e-6)
 
 
 @pytest.mark.parametrize("seed", range(4))

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from asperity.errors import CoarseSamplingWarning, MissingPointsWarning
 from asperity.reference import cnossos
-from asperity.spectra import energy_sum
+from asperity.spectra import band_levels, energy_sum, psd
 from asperity.surfaces import measured_lines
 from asperity.surfaces.bands import band_levels_of, from_bands, strip_from_bands
 from asperity.surfaces.heightmap import Profile
@@ -177,6 +177,20 @@ def test_third_octaves_stand_beside_the_limit():
     assert measured_lines.third_octaves([Profile(np.zeros(100), 0.2)]) is None
 
 
+@pytest.mark.parametrize("overwrite", [False, True])
+def test_a_line_is_processed_as_it_lies_and_levelled_afterwards(overwrite):
+    """A circle on a slope touches elsewhere than on the level."""
+    missing = 10 * [np.nan]  # what is cut off is not levelled with the rest
+    bent = 1e-3 * np.arange(3000) * 0.5 * MM + 5 * UM * np.random.default_rng(1).normal(size=3000)
+    line = Profile([*missing, *bent], 0.5 * MM)
+    expected = process([Profile(bent, 0.5 * MM)])[0][0].levelled()
+    found = measured_lines.third_octaves([line], overwrite=overwrite)
+    _, density = psd(expected.heights, 0.5 * MM)
+    wavenumber = np.fft.rfftfreq(3000, 0.5 * MM)
+    _, levels = band_levels(wavenumber, density, UM)
+    assert_allclose(found.processed, levels, atol=1e-6)
+
+
 HOLED = Profile([*np.zeros(40), *20 * [np.nan], *np.zeros(40)], MM)
 
 
@@ -242,6 +256,21 @@ def test_spikes_side_by_side_share_a_foot_and_go_as_one_by_one(monkeypatch):
     assert whole[1:] == single[1:]
     assert whole[1] == len(at)
     assert (whole[0].heights[at] < heights[at] - 50 * UM).all()
+
+
+@pytest.mark.parametrize("together", [3, 8, 50])
+def test_spikes_of_pieces_of_any_length_are_those_of_the_whole_line(together, monkeypatch):
+    """Pieces end at feet, whose bends need a point on either side as it was."""
+    draw = np.random.default_rng(together)
+    for _ in range(20):
+        heights = 2 * UM * draw.normal(size=300) * (draw.random(300) < 0.5)
+        heights[draw.integers(0, 300, 12)] += 60 * UM
+        whole = remove_spikes(Profile(heights, MM))
+        monkeypatch.setattr(measured_lines, "TOGETHER", together)
+        pieces = remove_spikes(Profile(heights, MM))
+        monkeypatch.undo()
+        assert_array_equal(pieces[0].heights, whole[0].heights)
+        assert pieces[1:] == whole[1:]
 
 
 @pytest.mark.parametrize(("evaluated", "most"), [

@@ -257,6 +257,12 @@ def test_the_first_of_the_flattest_secants_counts():
     assert found["vk"] == pytest.approx(2.0 * below / (1.0 - found["mr2"]), rel=1e-3)
 
 
+def test_layers_are_those_of_heights_about_their_mean():
+    heights = np.random.default_rng(2).normal(size=5000) ** 3
+    found = stratified(heights + 40.0, 40.0)
+    assert found == pytest.approx(stratified(heights), rel=1e-9)
+
+
 def test_the_curve_falls_from_the_highest_to_the_lowest():
     """Of heights that are spread evenly it is a straight line; missing ones have no part in it."""
     heights = np.append(np.linspace(-1.0, 1.0, 1001), [np.nan] * 10)

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-from asperity.diagnostics.confidence import Basis, own_share
+from asperity.diagnostics.confidence import Basis, chance_elsewhere, own_share
 from asperity.diagnostics.hypotheses import BearingRecord, Hypothesis
 from asperity.diagnostics.prominence import LOWEST_PLACE
 from asperity.diagnostics.shaft import MAINS, SURELY
@@ -115,7 +115,10 @@ class Diagnosis:
     def confidence(self) -> float:
         """That this is so, 0 to 1: less where another bearing may have the blows; even at most where that is
         doubted."""
-        sure = self.basis.confidence * (own_share(self.by_chance) if self.may_be_foreign else 1.0)
+        chance = self.by_chance if self.may_be_foreign else 0.0
+        if self.basis.kind == ELSEWHERE:
+            chance = chance_elsewhere(self.basis.support)
+        sure = self.basis.confidence * own_share(chance)
         return min(sure, EVEN) if self.doubted else sure
 
     @property

@@ -31,7 +31,7 @@ BETTER = 8.0
 """Support by which a speed beside the one given must be better to be taken in its place."""
 DEEP = 0.25
 """Share by which the envelope follows blows that are no shaft's."""
-UNLIKE = 60.0
+UNLIKE = 55.0
 """Support from which on unlike blows are believed as others are: of made machines those that were none had up
 to 49, and balls that one ring strikes harder have some 70 in quiet records."""
 WEAK = 3.0

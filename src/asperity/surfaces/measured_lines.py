@@ -160,7 +160,7 @@ def _cut_spikes(heights: Array, spacing: float) -> tuple[int, int]:
         size = TOGETHER if last else 2 * size
         if not last:
             continue
-        before = heights[max(first + last - 2, 0) : first + last].copy()  # as they were, for the next piece
+        before = heights[first + last - 1 : first + last].copy()  # as it was, for the next piece
         spikes, points = _cut_between(heights[first : first + last + 1], sharp, feet, spacing)
         removed += spikes
         changed += points
