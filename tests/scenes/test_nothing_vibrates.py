@@ -58,6 +58,29 @@ def test_perfect_surfaces_of_a_bearing_with_waves_under_an_axial_load_have_no_ve
     assert np.isnan(found["alone_velocity_deviation"].values[0]).all()
 
 
+def recorded_durations(monkeypatch):
+    """Durations of the records of all bearings that are rolled from now on, s."""
+    rolled = []
+
+    def roll(*given, duration, **others):
+        rolled.append(duration)
+        return roll_bearing(*given, duration=duration, **others)
+
+    roll_bearing = computed_bearing.roll_bearing
+    monkeypatch.setattr(computed_bearing, "roll_bearing", roll)
+    return rolled
+
+
+@pytest.mark.filterwarnings("ignore::asperity.errors.PhysicsWarning")
+@pytest.mark.parametrize(("settling", "tried"), [("20 ms", 0.1 * 0.1 - 0.02), ("5 ms", 0.1 * 0.085 - 0.005)])
+def test_a_law_that_is_looked_up_is_tried_for_a_tenth_of_run_in_and_record(monkeypatch, settling, tried):
+    """For one step of the record where the run-in is longer than that."""
+    case = as_case(PERFECT | {"laws": ["table"], "duration": "80 ms", "settling": settling})
+    rolled = recorded_durations(monkeypatch)
+    run(case, brief=True)
+    assert rolled == pytest.approx([max(tried, case.step), 0.08])
+
+
 @pytest.mark.filterwarnings("ignore::asperity.errors.PhysicsWarning")
 @pytest.mark.parametrize(
     ("keys", "asked", "still"),
@@ -75,14 +98,7 @@ def test_perfect_surfaces_are_rolled_for_a_turn_of_the_cage_where_nothing_vibrat
     """All of the record elsewhere."""
     keys = {"duration": "0.12 s", "laws": ["hertz"], "inner_raceway": {"waviness": "0.2 um"}} | keys
     case = as_case(PERFECT | keys)
-    rolled = []
-
-    def roll(*given, duration, **others):
-        rolled.append(duration)
-        return roll_bearing(*given, duration=duration, **others)
-
-    roll_bearing = computed_bearing.roll_bearing
-    monkeypatch.setattr(computed_bearing, "roll_bearing", roll)
+    rolled = recorded_durations(monkeypatch)
     found = run(case)["bearing"]["alone_velocity"].values[0, :2]
     assert (found == 0.0).all() == still
     turn = [1.0 / case.kinematics.cage] * asked
