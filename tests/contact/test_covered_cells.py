@@ -87,6 +87,7 @@ def test_every_cell_at_a_rim_keeps_the_gap_of_the_curves(across, ratio, height, 
             expected[int(i) - first, int(j) - left] = left_over * step * width
     assert len(expected) > 4 * across
     assert number == len(listed)
+    assert 0 < steep < number
     most = tolerance * max(expected.values())
     assert {cell: listed[cell] for cell in expected} == pytest.approx(expected, rel=0, abs=most)
     bare = [cell for cell in listed if cell not in expected]
@@ -375,6 +376,13 @@ def test_covered_cells_take_no_more_iterations_than_whole_ones():
     covered, unconverged = rough_scan("covered")
     assert covered < 1.15 * whole
     assert unconverged == 0
+
+
+def test_curves_go_through_their_values():
+    for j, values in enumerate(rim_curves.LEFT):
+        slant = (j / (rim_curves.SLANTS - 1)) ** 2
+        found = [rim_curves.remaining_gap(k / 25.0, slant)[0] for k in range(rim_curves.KNOTS)]
+        np.testing.assert_allclose(found, values, atol=1e-6)
 
 
 def test_nothing_is_left_of_the_gap_far_inside_a_rim():
