@@ -89,7 +89,12 @@ def test_a_run_that_is_not_whole_is_none(out, what):
 def test_a_run_of_another_program_or_without_convergence_is_computed(out, monkeypatch):
     case = read_case("small.toml")
     assert earlier_result(case, out, report=False, more=["convergence"]) is None
-    monkeypatch.setattr("asperity.__version__", "9")
+    others = ("asperity.__version__", "9"), ("asperity.cli.running.program", lambda: "other sources")
+    for name, value in others:
+        with monkeypatch.context() as patch:
+            patch.setattr(name, value)
+            assert earlier_result(case, out, report=False, more=()) is None
+    monkeypatch.setenv("ASPERITY_DEVICE", "gpu")
     assert earlier_result(case, out, report=False, more=()) is None
 
 

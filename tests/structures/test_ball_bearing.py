@@ -43,6 +43,21 @@ def test_many_balls_carry_a_radial_load_as_the_integral():
     assert found.stiffness[0, 0, 0] == pytest.approx(1.5 * 200.0 / closed, rel=2e-4)
 
 
+def test_each_angle_of_the_cage_has_a_balance_of_its_own():
+    """The same as alone, and as asked before; nobody changes what others are given as well."""
+    at = [0.0, 0.1, 0.3]
+    found = B6205.loaded(radial=500.0, cage_angles=at)
+    np.testing.assert_allclose(found.azimuth[:, 0], at)
+    for angle, displacement in zip(at, found.displacement, strict=True):
+        alone = B6205.loaded(radial=500.0, cage_angles=[angle])
+        np.testing.assert_allclose(alone.displacement[0], displacement, rtol=1e-7, atol=1e-13)
+    assert np.ptp(found.displacement[:, 0]) > 1e-4 * found.displacement[0, 0]
+    np.testing.assert_array_equal(np.isnan(found.inner_angles), found.inner_loads == 0.0)
+    assert np.isnan(found.inner_angles).any()
+    with pytest.raises(ValueError, match="read-only"):
+        found.displacement[0] = 0.0
+
+
 def test_its_geometry_is_that_of_textbooks():
     """1/R = (2/D) γ/(1 ∓ γ) along the raceways; clearance and free contact angle say the same."""
     gamma = 0.2 * math.cos(OTHER.free_angle)

@@ -8,6 +8,7 @@ from scipy.optimize import least_squares
 
 from asperity import BallBearing
 from asperity.structures.bearing_creepage import creepage_of, flank_spin
+from asperity.structures.bearing_statics import _Balls
 from asperity.structures.waviness_tolerance import wave_tolerances
 from refusals import refusals
 
@@ -35,6 +36,17 @@ def test_under_an_axial_load_balls_are_between_two_flanks_as_in_grooves_of_one_a
     np.testing.assert_allclose(found.damping(20.0)[:, 2, 2], expected.damping(20.0)[:, 2, 2], rtol=1e-8)
     assert found.contact_angle == pytest.approx(expected.contact_angle)
     np.testing.assert_allclose(found.inner_pressure, expected.inner_pressure, rtol=1e-9)
+
+
+def test_the_force_of_both_flanks_is_the_slope_of_their_energy():
+    balls = _Balls(TIGHT, 0.0)
+    place = np.array([TIGHT.groove_distance, 2e-6])
+    step = 1e-9
+    for ring in ("inner", "outer"):
+        assert (balls.contacts(place, ring)[0] > 0.0).all()
+        energies = [balls.held(place + way, ring)[0] for way in (*step * np.eye(2), *-step * np.eye(2))]
+        slope = (np.array(energies[:2]) - energies[2:]) / (2.0 * step)
+        np.testing.assert_allclose(balls.held(place, ring)[1], slope, rtol=1e-6)
 
 
 def test_under_a_radial_load_both_flanks_carry_alike():
