@@ -16,7 +16,8 @@ from asperity.errors import InputError
 from asperity.laws import LawSpec, Need, spec_of
 from asperity.parameters import ANGLE, DURATION, Choice, Flag, ListOf, Quantity, key, keys_of, optional
 from asperity.rolling.resolution import steps_per_resonance
-from asperity.structures.roller_bearing import ROLLER_BEARINGS, STEEPEST_TILT, RollerBearing
+from asperity.structures.roller_bearing import ROLLER_BEARINGS, RollerBearing
+from asperity.structures.rollers_on_raceways import STEEPEST_TILT
 from asperity.written_numbers import rounded
 
 if TYPE_CHECKING:

@@ -18,7 +18,7 @@ from asperity.reference.materials import material
 from asperity.rolling.steps import warn_if_coarse
 from asperity.scenarios.usual import OF_ANYTHING, OF_BEARINGS, OF_TRAINS, UNIT, unusual
 from asperity.speeds import slowest
-from asperity.structures.ball_bearing import STATIC_PRESSURE
+from asperity.structures.balls_in_grooves import STATIC_PRESSURE
 from asperity.structures.body import GRAVITY
 from asperity.structures.roller_bearing import AnyBearing, RollerBearing
 from asperity.structures.track import Track

@@ -24,8 +24,7 @@ from asperity.scenarios.roller_raceways import on_surface
 from asperity.speeds import at_fastest, slowest
 from asperity.store import Store
 from asperity.structures.bearing_statics import doubt_speed
-from asperity.structures.roller_bearing import AnyBearing
-from asperity.structures.rolling_bearing import PARTS
+from asperity.structures.rolling_bearing import PARTS, RollingBearing
 from asperity.surfaces.raceway import Raceway
 from asperity.written_numbers import in_newtons, rounded
 
@@ -33,7 +32,7 @@ RINGS = ("inner", "outer")
 NAMES = {"outer": "outer raceway", "inner": "inner raceway", "ball": "balls"}
 
 
-def names_in(bearing: AnyBearing) -> dict[str, str]:
+def names_in(bearing: RollingBearing) -> dict[str, str]:
     """Names of the parts of a bearing: what rolls in it is balls or rollers."""
     return NAMES | {"ball": f"{bearing.ELEMENT}s"}
 

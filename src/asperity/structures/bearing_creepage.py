@@ -12,14 +12,14 @@ from asperity.contact.groove_creepage import (
     sliding_speed,
     spin_moment,
 )
-from asperity.structures.ball_bearing import BallBearing
+from asperity.structures.balls_in_grooves import BallsInGrooves
 from asperity.structures.bearing_statics import LoadedBearing
 
 Ring = Literal["inner", "outer"]
 RINGS: tuple[Ring, Ring] = ("inner", "outer")
 
 
-def ball_axis(bearing: BallBearing, angles: tuple[Array, Array], control: Ring) -> Array:
+def ball_axis(bearing: BallsInGrooves, angles: tuple[Array, Array], control: Ring) -> Array:
     """Inclination of the axes of balls to that of the bearing (...), rad, as in `spin_creepage`."""
     one_of("control", control, RINGS)
     share = bearing.ball_diameter / bearing.pitch_diameter
@@ -29,7 +29,7 @@ def ball_axis(bearing: BallBearing, angles: tuple[Array, Array], control: Ring) 
     return np.arctan2(np.sin(inner), np.cos(inner) - share)
 
 
-def spin_creepage(bearing: BallBearing, angles: tuple[Array, Array], control: Ring) -> tuple[Array, Array]:
+def spin_creepage(bearing: BallsInGrooves, angles: tuple[Array, Array], control: Ring) -> tuple[Array, Array]:
     """Spin creepages of balls of which one ring controls the axis: they do not spin on that one.
 
     Parameters
@@ -61,7 +61,7 @@ def spin_creepage(bearing: BallBearing, angles: tuple[Array, Array], control: Ri
     return np.where(np.isnan(on_inner), np.nan, 0.0), np.abs(on_outer)
 
 
-def _spins(bearing: BallBearing, angles: tuple[Array, Array], axis: Array) -> tuple[Array, Array]:
+def _spins(bearing: BallsInGrooves, angles: tuple[Array, Array], axis: Array) -> tuple[Array, Array]:
     """Spins on the inner and the outer ring of balls that turn about an axis inclined by an angle, rad/m."""
     radius = 0.5 * bearing.ball_diameter
     pitch = 0.5 * bearing.pitch_diameter
@@ -71,7 +71,7 @@ def _spins(bearing: BallBearing, angles: tuple[Array, Array], axis: Array) -> tu
     return on_inner, on_outer
 
 
-def flank_spin(bearing: BallBearing) -> tuple[float, float]:
+def flank_spin(bearing: BallsInGrooves) -> tuple[float, float]:
     """Spin creepages, rad/m, of a ball that rolls on all four flanks, on the inner and on the outer ring.
 
     Its axis is that of the bearing, so that it slides in the middle of no contact: the spins are

@@ -15,7 +15,7 @@ from asperity.contact.hertz import Hertz
 from asperity.contact.tangential import FrictionalHalfSpace
 from asperity.errors import OutOfRangeWarning
 from asperity.reference.materials import Material
-from asperity.structures.ball_bearing import BallBearing
+from asperity.structures.balls_in_grooves import BallsInGrooves
 from asperity.structures.bearing_creepage import RINGS, BearingCreepage, Ring
 from asperity.structures.bearing_statics import LoadedBearing
 from asperity.structures.rolling_bearing import Kinematics
@@ -61,7 +61,7 @@ class BallOnRaceway(SteadyRolling):
     @classmethod
     def of(
         cls,
-        bearing: BallBearing,
+        bearing: BallsInGrooves,
         ring: Ring,
         friction: Friction,
         largest_load: float,
@@ -167,7 +167,7 @@ def gyration_of(
     return np.divide(gyrating, held, out=gyration, where=held > 0.0)
 
 
-def rolling_speed(bearing: BallBearing, turning: Kinematics) -> float:
+def rolling_speed(bearing: BallsInGrooves, turning: Kinematics) -> float:
     """Speed of a ball on both raceways, m/s."""
     return math.pi * bearing.ball_diameter * turning.spin
 

@@ -12,14 +12,16 @@ import numpy as np
 from asperity.arguments import Array, ArrayLike, finite_array, not_negative, require
 from asperity.contact.hertz import Hertz, check_half_space
 from asperity.errors import ComputationError, Grade, InputError, OutOfRangeWarning
-from asperity.structures.ball_bearing import FATIGUE_PRESSURE, STATIC_PRESSURE, BallBearing
+from asperity.structures.balls_in_grooves import STATIC_PRESSURE, BallsInGrooves
 from asperity.structures.least_energy import TOLERANCE, least_energy
 from asperity.structures.rolling_bearing import FASTEST, RollingBearing
 from asperity.written_numbers import rounded
 
 if TYPE_CHECKING:
-    from asperity.structures.roller_bearing import RollerBearing
+    from asperity.structures.rollers_on_raceways import RollersOnRaceways
 
+FATIGUE_PRESSURE = 1.5e9
+"""Peak pressure, Pa, of the fatigue load limit, below which bearing steel lasts (ISO 281:2007)."""
 LEAST = 1e-6
 """N, of what holds a ball between arches: less is none."""
 PLANE = np.eye(2)
@@ -92,7 +94,7 @@ class LoadedBearing(LoadedRow):
         force of a ball presses if that is more.
     """
 
-    bearing: BallBearing
+    bearing: BallsInGrooves
     radial: float
     axial: float
     speed: float
@@ -223,7 +225,7 @@ def angles_of_cage(bearing: RollingBearing, given: ArrayLike | None) -> Array:
 
 
 def load_distribution(
-    bearing: BallBearing, radial: float, axial: float, speed: float, cage_angles: ArrayLike | None
+    bearing: BallsInGrooves, radial: float, axial: float, speed: float, cage_angles: ArrayLike | None
 ) -> LoadedBearing:
     """Solve for the load distribution and doubt it, see `BallBearing.loaded`."""
     radial = not_negative("radial load (N)", radial)
@@ -275,7 +277,7 @@ def _link(stretch: Array, length: float, constant: float) -> tuple[Array, Array,
 class _Balls:
     """What the balls of a bearing do between two groove centres that are a stretch (…, 2) apart."""
 
-    bearing: BallBearing
+    bearing: BallsInGrooves
     lift: float  # centrifugal force, N
 
     @cached_property
@@ -383,14 +385,16 @@ def _moved(azimuth: Array) -> Array:
     return moved
 
 
-def _solved(bearing: BallBearing, radial: float, axial: float, speed: float, angles: Array) -> LoadedBearing:
+def _solved(
+    bearing: BallsInGrooves, radial: float, axial: float, speed: float, angles: Array
+) -> LoadedBearing:
     """The inner ring in balance at each angle of the cage."""
     return _balanced(bearing, radial, axial, speed, tuple(angles.tolist()))
 
 
 @lru_cache(maxsize=64)  # of cases that are read one after the other, most have the load of another one
 def _balanced(
-    bearing: BallBearing, radial: float, axial: float, speed: float, angles: tuple[float, ...]
+    bearing: BallsInGrooves, radial: float, axial: float, speed: float, angles: tuple[float, ...]
 ) -> LoadedBearing:
     azimuth = bearing.azimuths(np.array(angles))
     moved = _moved(azimuth)
@@ -484,7 +488,7 @@ def _doubt_flanks(found: LoadedBearing, ring: str) -> None:
     require(across <= most, "contact", received, allowed, "Lower the load, or take a wider arch_angle.")
 
 
-def doubt_fit(of: BallBearing | RollerBearing) -> None:
+def doubt_fit(of: BallsInGrooves | RollersOnRaceways) -> None:
     """Warn of a clearance below zero that presses what rolls beyond what steel lasts under, unloaded."""
     squeezed = of.interference_force(overlap_of(of))
     peak = max(each.peak_pressure(each.approach(squeezed)) for each in (of.inner_contact, of.outer_contact))
@@ -497,12 +501,12 @@ def doubt_fit(of: BallBearing | RollerBearing) -> None:
         )
 
 
-def overlap_of(of: BallBearing | RollerBearing) -> float:
+def overlap_of(of: BallsInGrooves | RollersOnRaceways) -> float:
     """How far raceways overlap where something rolls between them unloaded, along its normal, m."""
     return max(-0.5 * of.radial_clearance * math.cos(of.free_angle), 0.0)
 
 
-def pressed_by_fit(of: BallBearing | RollerBearing) -> tuple[float, str]:
+def pressed_by_fit(of: BallsInGrooves | RollersOnRaceways) -> tuple[float, str]:
     """Force of a ball or roller, N, that comes from the fit alone, and what makes it smaller."""
     squeezed = of.interference_force(overlap_of(of))
     clearance = f"A clearance of {rounded(of.radial_clearance * 1e6, 4)} µm alone"

@@ -19,7 +19,7 @@ from asperity.structures.bearing_statics import (
     pressed_by_fit,
 )
 from asperity.structures.least_energy import TOLERANCE, least_energy
-from asperity.structures.roller_bearing import STEEPEST_TILT, RollerBearing
+from asperity.structures.rollers_on_raceways import STEEPEST_TILT, RollersOnRaceways
 from asperity.written_numbers import rounded
 
 STATIC_PRESSURE = 4.0e9
@@ -60,7 +60,7 @@ class LoadedRollers(LoadedRow):
         force of a roller presses if that is more.
     """
 
-    bearing: RollerBearing
+    bearing: RollersOnRaceways
     radial: float
     axial: float
     speed: float
@@ -189,7 +189,7 @@ class LoadedRollers(LoadedRow):
 
 
 def roller_load_distribution(
-    bearing: RollerBearing,
+    bearing: RollersOnRaceways,
     radial: float,
     axial: float,
     *,
@@ -231,7 +231,7 @@ def roller_load_distribution(
     return found
 
 
-def _check_axial(bearing: RollerBearing, radial: float, axial: float, speed: float) -> None:
+def _check_axial(bearing: RollersOnRaceways, radial: float, axial: float, speed: float) -> None:
     """Refuse an axial load that is less than what raceways at an angle push a free ring away with."""
     lift = bearing.centrifugal_force(speed) * bearing.flung_outwards(bearing.contact_angle)
     thrown = bearing.flung_axially(lift)
@@ -322,7 +322,7 @@ class _Rollers:
 
 
 def _solved(
-    bearing: RollerBearing,
+    bearing: RollersOnRaceways,
     load: Array,
     tilt: Array | None,
     speed: float,
@@ -339,7 +339,7 @@ def _solved(
 
 @lru_cache(maxsize=64)  # of cases that are read one after the other, most have the load of another one
 def _balanced(
-    bearing: RollerBearing,
+    bearing: RollersOnRaceways,
     forces: tuple[float, ...],
     tilts: tuple[float, ...] | None,
     speed: float,
@@ -429,7 +429,7 @@ class _Shaft:
         return least_energy(energy_of, start, scale, "balance of the inner ring")
 
 
-def _first_ways(bearing: RollerBearing, load: Array) -> Array:
+def _first_ways(bearing: RollersOnRaceways, load: Array) -> Array:
     """Ways of the ring (5,), m, from which its balance is sought: through the clearance, by its load."""
     apart = max(0.5 * bearing.clearance, 0.0)
     pressed = 2.0 * bearing.inner_contact.approach(5.0 * load[FORCES].max() / bearing.rollers)
@@ -439,7 +439,7 @@ def _first_ways(bearing: RollerBearing, load: Array) -> Array:
     return np.array([along, 0.0, axially, 0.0, 0.0])
 
 
-def _followed(bearing: RollerBearing, azimuth: Array) -> Array:
+def _followed(bearing: RollersOnRaceways, azimuth: Array) -> Array:
     """How approach and tilt times L/2 of rollers (…, 2) follow the inner ring (…, 2, 5).
 
     A tilt γ at an azimuth moves the ring axially by R γ where it is R from the axis, and outwards by −x γ
