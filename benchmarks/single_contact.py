@@ -25,7 +25,7 @@ import numpy as np
 from solve_profile import bare
 
 from asperity import HalfSpace, Hertz
-from asperity.contact import halfspace
+from asperity.kernels import scanning
 from asperity.kernels.box import empty_box
 from asperity.kernels.influence import convolution
 from asperity.kernels.options import LOOP, compiled
@@ -49,7 +49,7 @@ def least(work: Callable[[], Any], rounds: int, clock: Callable[[], float] = tim
 
 def inside(half_space: HalfSpace, gap: np.ndarray, approach: float, rounds: int) -> float:
     """Least time in the compiled entry of a solution, s."""
-    entry, seconds = halfspace.solve_positions, []
+    entry, seconds = scanning.solve_positions, []
 
     def timed(*arguments: Any) -> Any:
         began = time.perf_counter()
@@ -57,7 +57,7 @@ def inside(half_space: HalfSpace, gap: np.ndarray, approach: float, rounds: int)
         seconds.append(time.perf_counter() - began)
         return result
 
-    with patch.object(halfspace, "solve_positions", timed):
+    with patch.object(scanning, "solve_positions", timed):
         for _ in range(rounds):
             half_space.solve(gap, approach=approach)
     return min(seconds)

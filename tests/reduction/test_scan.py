@@ -102,7 +102,7 @@ def test_flaws_are_warned_of(monkeypatch):
     cut_off = r"4 of 4 .* \(100 %\) .* A window of 0\.1\d+ mm holds them"
     with pytest.warns(TruncatedContactWarning, match=cut_off):
         half_space(21).scan(np.zeros((24, 21)), ball(21), [0.5e-6])
-    monkeypatch.setattr("asperity.contact.halfspace.MAX_ITERATIONS", 1)
+    monkeypatch.setattr("asperity.contact.pressed_grid.MAX_ITERATIONS", 1)
     with pytest.warns(UnconvergedWarning, match="4 of 4 contact solutions of the scan.* larger rtol"):
         forces = half_space().scan(rough(44), ball(), [0.2e-6])
     assert forces.attrs["unconverged"] == 4

@@ -170,7 +170,7 @@ def rolled_over(
     InputError
         If the sample has no room for it.
     """
-    space = smooth.half_space
+    space = rolling.half_space
     body = smooth.undeformed_gap
     length = contact_rows(smooth)
     rows = len(body)

@@ -16,17 +16,13 @@ sound.
 
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from asperity.arguments import Array, require
+from asperity.arguments import Array
 from asperity.kernels.batched import sunk
 from asperity.surfaces.edges import FIRST, Edges
-from asperity.written_numbers import rounded
-
-if TYPE_CHECKING:
-    from asperity.contact.halfspace import HalfSpace
 
 KNOTS, SLANTS, PER_UNIT = 49, 7, 40
 """Values of a curve, from the place `FIRST` to that of a cell that is all before the edge, curves, and knots
@@ -68,23 +64,6 @@ class Softness(NamedTuple):
         """Number of cells in contact, by their sound shares but where all of the cell carries."""
         all_of_it = self.compliance(pressure) == 0.0
         return float(np.sum(np.where(all_of_it, 1.0, shares)[pressure > 0.0]))
-
-
-def check_edges(edges: Edges, half_space: "HalfSpace", shape: tuple[int, int]) -> None:
-    """Refuse edges that are on other cells than a surface of so many rows and lines, or on unfit ones."""
-    what = "edges of a contact"
-    remedy = "Lay them on the cells of the contact."
-    own = edges.distance.shape
-    given = half_space.spacing
-    require(own == shape, what, f"shape {own}", f"shape {shape}", remedy)
-    received, allowed = (
-        f"cells of {rounded(1e6 * x, 6)} × {rounded(1e6 * y, 6)} µm" for x, y in (edges.spacing, given)
-    )
-    require(np.allclose(edges.spacing, given, rtol=1e-9, atol=0.0), what, received, allowed, remedy)
-    remedy = "How much cells at edges give way is known for whole cells and a free boundary."
-    fit = (("cells", half_space.cells, "whole"), ("boundary", half_space.boundary, "free"))
-    for name, value, wanted in fit:
-        require(value == wanted, f"{name} of a contact with edges", repr(value), repr(wanted), remedy)
 
 
 @lru_cache(maxsize=1)  # a contact is solved with it, and looked at afterwards

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from asperity.arguments import Array, ArrayLike, NDArray, finite_array, real
-from asperity.contact.halfspace import HalfSpace
+from asperity.contact.elastic_grid import ElasticGrid
 from asperity.contact.solved import Contact
 from asperity.errors import Outcome
 
@@ -194,7 +194,7 @@ class SlidingContact:
         return -float((self.traction * self.slip).sum()) * self.normal.half_space.cell_area
 
 
-def cell_places(space: HalfSpace) -> tuple[Array, Array]:
+def cell_places(space: ElasticGrid) -> tuple[Array, Array]:
     """Places of the cells from the middle of the grid, (nx, 1) and (1, ny), m."""
     x, y = (
         d * (np.arange(float(n)) - 0.5 * (n - 1)) for n, d in zip(space.shape, space.spacing, strict=True)

@@ -1,43 +1,30 @@
 """Frictionless contact of an elastic half-space with a rough or smooth body, at given approach or load."""
 
 import math
-from dataclasses import replace
-from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from asperity import arguments
-from asperity.arguments import Array, ArrayLike, NDArray, real, require, shown
+from asperity.arguments import ArrayLike, real, require
 from asperity.contact import periodic
-from asperity.contact.edges import Softness, check_edges, softness_at
-from asperity.contact.solved import Contact, warn_unconverged
-from asperity.errors import Outcome
-from asperity.kernels import fourier, projected_cg, rims, scanning
-from asperity.kernels.batched import apply_stencil, convolve_padded, padded_spectrum, unit_indentation
-from asperity.kernels.box import foundation_approach
-from asperity.kernels.influence import Influence, influence, influence_table, means_table, prepared
+from asperity.contact.elastic_grid import check_edges, warn_unconverged
+from asperity.contact.pressed_grid import PressedGrid
+from asperity.contact.solved import Contact
 from asperity.progress import Progress
 from asperity.store import Store
 from asperity.surfaces.edges import Edges
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.strip import Rows
-from asperity.threads import refuse_to_go_on
-from asperity.units import written
 from asperity.written_numbers import count_of, in_newtons, rounded
 
 if TYPE_CHECKING:
     import xarray
 
-MAX_ITERATIONS = 2000
-CELLS = ("covered", "whole")
-"""What `cells` may be."""
 BELOW_ONE = math.nextafter(1.0, 0.0)
-AT_ONCE = 16
-"""Positions between two looks at whether the user wants to stop."""
 
 
-class HalfSpace:
+class HalfSpace(PressedGrid):
     """Elastic half-space on a grid of rectangular cells, with a free or a periodic boundary.
 
     Parameters
@@ -86,152 +73,6 @@ class HalfSpace:
     >>> contact.converged, f"{contact.force:.3f} N", f"{contact.approach * 1e6:.2f} um"  # by Hertz 0.16 um
     (True, '1.000 N', '0.16 um')
     """
-
-    def __init__(
-        self,
-        shape: tuple[int, int],
-        spacing: float | tuple[float, float],
-        modulus: float,
-        hardness: float | None = None,
-        cells: str = "whole",
-        boundary: str = "free",
-    ) -> None:
-        allowed = "two positive whole numbers (nx, ny)"
-        sides = arguments.two("half-space shape", shape, allowed)
-        nx, ny = (arguments.whole("half-space shape", n, allowed, at_least=1) for n in sides)
-        self.shape = (nx, ny)
-        self.spacing = arguments.two_lengths("half-space spacing", spacing)
-        remedy = "Steel on steel has 115e9."
-        self.modulus = real("contact modulus", modulus, "a positive number, Pa", above=0.0, remedy=remedy)
-        allowed = "a positive number, Pa, or None"
-        self.hardness = None if hardness is None else real("hardness", hardness, allowed, above=0.0)
-        require(cells in CELLS, "cells of the half-space", repr(cells), " or ".join(map(repr, CELLS)))
-        self.cells = cells
-        known = isinstance(boundary, str) and boundary in periodic.BOUNDARIES
-        require(known, "boundary", shown(boundary), " or ".join(map(repr, periodic.BOUNDARIES)))
-        self.boundary = boundary
-        covers = cells == "whole" or boundary == "free"
-        remedy = "What the rim of a contact leaves is known of pressures on cells, and not of their waves."
-        require(covers, "cells of a periodic half-space", repr(cells), "'whole'", remedy)
-        reach_x, reach_y = (fourier.smooth_length(max(n, 32)) for n in self.shape)
-        dx, dy = self.spacing
-        scale = math.pi * self.modulus
-        if boundary == "periodic":
-            table, self.lift = periodic.lifted_table(self.shape, self.spacing, self.modulus)
-        else:
-            make = influence_table if cells == "whole" else means_table
-            table, self.lift = make(reach_x, reach_y, dx, dy) / scale, 0.0
-        taps = _unit_taps(dy / dx) * (scale / dx)
-        self._sides = (dx / self.modulus, dy / self.modulus) if cells == "covered" else None
-        self._known = {dtype: influence(table, taps, dtype) for dtype in (np.float64, np.float32)}
-
-    def __repr__(self) -> str:
-        spacing = " × ".join(written(each, "m", "um") for each in self.spacing)
-        cells = f"{self.shape[0]} × {self.shape[1]} {self.cells} cells of {spacing}"
-        yields = "elastic" if self.hardness is None else f"hardness {written(self.hardness, 'Pa', 'GPa')}"
-        modulus = written(self.modulus, "Pa", "GPa")
-        return f"<{type(self).__name__}: {cells}, E* {modulus}, {yields}, {self.boundary} boundary>"
-
-    @property
-    def influence(self) -> Influence:
-        """Influence of pressure on displacement, in double precision."""
-        return self._known[np.float64]
-
-    @property
-    def cell_area(self) -> float:
-        """Area of one cell, m²."""
-        return self.spacing[0] * self.spacing[1]
-
-    def displacement(self, pressure: ArrayLike) -> Array:
-        """Surface displacement under a pressure, m, positive into the material.
-
-        Parameters
-        ----------
-        pressure : array_like, shape (nx, ny)
-            Pressure, Pa.
-
-        Returns
-        -------
-        ndarray, shape (nx, ny)
-            Displacement, m; of a period without its mean.
-        """
-        p, spectrum = self._field("pressure", pressure), padded_spectrum(self.influence.table, *self.shape)
-        return convolve_padded(p[None], spectrum, np)[0] - self.lift * p.sum()
-
-    def tangent_stiffness(self, pressure: ArrayLike, rtol: float = 1e-9, edges: Edges | None = None) -> float:
-        """Tangent stiffness dF/dδ of a contact whose pressure is known, N/m.
-
-        Parameters
-        ----------
-        pressure : array_like, shape (nx, ny)
-            A solved pressure, Pa. Cells at the hardness cap carry no further load.
-        rtol : float
-            Relative residual of the linear solution.
-        edges : Edges, optional
-            Sharp edges that the pressure was solved with.
-
-        Returns
-        -------
-        float
-            dA · 1ᵀ A⁻¹ 1 on the contact set, N/m; infinite where all of a period touches.
-        """
-        p = self._field("pressure", pressure)
-        free = (p > 0.0) & (p < self.pressure_cap)
-        if not free.any():
-            return 0.0
-        if self.boundary == "periodic" and free.all():
-            return math.inf
-        if self.cells == "covered":
-            return self._stiffness_with_rims(p, free, rtol)
-        rows, columns = (np.flatnonzero(free.any(axis=axis)) for axis in (1, 0))
-        inside = free[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
-        taps = tuple(self.influence.taps.tolist())
-        soft = None
-        if edges is not None:
-            giving = self.softness(edges).compliance(p)
-            soft = giving[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
-        rise, converged = unit_indentation(self.influence.table, taps, inside, rtol, MAX_ITERATIONS, soft)
-        if not converged:
-            warn_unconverged("tangent stiffness", Outcome.ITERATION_LIMIT)
-        stiffness = float(rise.sum()) * self.cell_area
-        return periodic.stiffness_of_lifted(stiffness, self) if self.lift else stiffness
-
-    def _stiffness_with_rims(self, pressure: Array, free: NDArray[np.bool_], rtol: float) -> float:
-        """Tangent stiffness where the gap at rims falls with the pressure: its matrix is not symmetric."""
-        from scipy.sparse.linalg import LinearOperator, gmres
-
-        own, along, across = self._rims_of(pressure)[0]
-        inside = np.flatnonzero(free)
-        softer = 1.0 / np.sqrt(1.0 + rims.SHARED * np.maximum(-own, 0.0) * self.influence.taps[0])
-        taps = tuple(self.influence.taps.tolist())
-        spectrum = padded_spectrum(self.influence.table, *self.shape)
-        field = np.zeros(self.shape)
-
-        def spread(values: Array) -> Array:
-            field.flat[inside] = values
-            return field
-
-        def displaced(values: Array) -> Array:
-            p = np.pad(spread(values), 1)
-            gap = (
-                own * p[1:-1, 1:-1]
-                + along * (p[2:, 1:-1] - p[:-2, 1:-1])
-                + across * (p[1:-1, 2:] - p[1:-1, :-2])
-            )
-            return (convolve_padded(field[None], spectrum, np)[0] - gap).flat[inside]
-
-        def preconditioned(values: Array) -> Array:
-            return (softer * apply_stencil((softer * spread(values))[None], taps, np)[0]).flat[inside]
-
-        size = (len(inside), len(inside))
-        operator = LinearOperator(size, displaced, dtype=np.float64)
-        inverse = LinearOperator(size, preconditioned, dtype=np.float64)
-        rise, missed = gmres(
-            operator, np.ones(len(inside)), rtol=rtol, atol=0.0, restart=60, maxiter=20, M=inverse
-        )
-        if missed:
-            warn_unconverged("tangent stiffness", Outcome.ITERATION_LIMIT)
-        return float(rise.sum()) * self.cell_area
 
     def solve(
         self,
@@ -452,148 +293,6 @@ class HalfSpace:
         origin = f"{surface.source}; " if isinstance(surface, HeightMap) and surface.source else ""
         return HeightMap(found.heights, self.spacing, origin + words)
 
-    @property
-    def pressure_cap(self) -> float:
-        """Largest pressure, Pa; infinite without hardness."""
-        return math.inf if self.hardness is None else self.hardness
-
-    def checked_load(self, load: float | None) -> float:
-        """Check that a load, N, is one that the window carries."""
-        load = real("load", load, "a force ≥ 0, N", at_least=0.0)
-        largest = self.pressure_cap * self.cell_area * self.shape[0] * self.shape[1]
-        allowed = f"less than hardness × window area = {in_newtons(largest)}"
-        remedy = "Enlarge the window, raise the hardness or lower the load."
-        require(load < largest, "load", in_newtons(load), allowed, remedy)
-        return load
-
-    def _field(self, name: str, values: ArrayLike) -> Array:
-        allowed = f"finite numbers, an array of the half-space's shape {self.shape}"
-        return _array(arguments.finite_array(name, values, allowed, shape=self.shape))
-
-    def softness(self, edges: Edges) -> Softness:
-        """Find how cells at edges give way."""
-        return softness_at(edges, self.modulus, self.hardness)
-
-    def at_approach(
-        self,
-        gap: Array,
-        approach: float,
-        start: Array | None,
-        rtol: float,
-        total: float = -1.0,
-        edges: Edges | None = None,
-    ) -> Contact:
-        """Solve at an approach, unchecked and silent; a sum of the pressure, Pa, is negative if not given.
-
-        On a period the approach is the lifted one of `asperity.contact.periodic`, there and in `at_load`.
-        """
-        soft = None if edges is None else self.softness(edges)
-        rows, at = np.zeros(self.shape), np.array([approach])
-        block = self.block(rows, gap, np.zeros(1), at, 0, rtol, load=total, soft=soft)
-        if start is not None:
-            block.pressures[1, 0], block.solved[0] = start, 1
-        self.solve_block(block)
-        pressure, (solved, iterations, unconverged, _) = block.pressures[0, 0], block.counts.tolist()
-        outcome = Outcome.CONVERGED if solved else Outcome.NO_CONTACT
-        if unconverged:
-            outcome = Outcome.ITERATION_LIMIT if iterations >= MAX_ITERATIONS else Outcome.STALLED
-        return Contact(
-            pressure, float(block.totals[0, 0]) * self.cell_area, approach + float(block.levels[0, 0]),
-            self._covered_cells(pressure, edges) * self.cell_area, iterations, float(block.residuals[0, 0]),
-            outcome, self, gap, edges,
-        )  # fmt: skip
-
-    def _covered_cells(self, pressure: Array, edges: Edges | None) -> float:
-        """Number of cells in contact, those at rims as far as they are covered, at edges as far as sound."""
-        if edges is not None:
-            return self.softness(edges).covered_cells(pressure, edges.shares)
-        if self.cells == "whole":
-            return int(np.count_nonzero(pressure))
-        return float(self._rims_of(pressure)[1].sum())
-
-    def _rims_of(self, pressure: Array) -> tuple[Array, Array]:
-        """Derivatives of the gap at rims (3, nx, ny), m/Pa, and covered shares of cells (nx, ny)."""
-        slopes, covered = np.zeros((3, *self.shape)), np.zeros(self.shape)
-        assert self._sides is not None
-        rims.rim_slopes(_array(pressure), *self._sides, slopes, covered)
-        return slopes, covered
-
-    def block(
-        self,
-        rows: Array,
-        body: Array,
-        planes: Array,
-        approaches: Array,
-        stride: int,
-        rtol: float,
-        single: bool = False,
-        load: float = -1.0,
-        soft: Softness | None = None,
-    ) -> scanning.Block:
-        """Lay out contacts to be solved, with nothing known of them; arguments as in `scanning.Block`.
-
-        In single precision the iteration is half again as fast, down to a tolerance of about 1e-6.
-        """
-        rows, body, planes, approaches = map(_array, (rows, body, planes, approaches))
-        if soft is not None:
-            softness, drop, flow = map(_array, (soft.softness, soft.drop, soft.flow))
-            soft = Softness(softness, drop, flow, soft.yielding)
-        k, shape, size = len(approaches), self.shape, (len(approaches), len(planes))
-        known = self._known[np.float32 if single else np.float64]
-        return scanning.Block(
-            rows, body, planes, approaches, stride, load, 0.0, self.pressure_cap, rtol, MAX_ITERATIONS,
-            scanning.room(known, *shape, self._sides, soft), np.empty(shape), np.empty(shape),
-            np.zeros((2, *shape)),
-            np.zeros((2, k, *shape)), np.zeros(k, dtype=np.int64), np.zeros(size), np.zeros(size),
-            np.zeros(size), np.zeros(4, dtype=np.int64),
-        )  # fmt: skip
-
-    def solve_block(self, block: scanning.Block) -> scanning.Block:
-        """Solve the contacts of a block, each from what is known of those before; unchecked and silent.
-
-        Threads share the convolutions that are prepared: at worst one overwrites what another has prepared,
-        which then comes again.
-        """
-        position, level, count, precision = 0, 0, len(block.planes), block.room.outer.dtype.type
-        while position < count:
-            refuse_to_go_on()
-            end, known = min(position + AT_ONCE, count), self._known[precision]
-            position, level, nx, ny = scanning.solve_positions(known, block, position, level, end)
-            if position < end:
-                self._known[precision] = prepared(self._known[precision], nx, ny)
-        return block
-
-    def at_load(
-        self, gap: Array, load: float, start: Array | None, rtol: float, edges: Edges | None = None
-    ) -> Contact:
-        """Solve at a given load as `solve` does, unchecked and silent: look at `converged`.
-
-        The overlap at an estimated approach is all that needs a grid.
-        """
-        lowest = float(gap.min())
-        if load == 0.0:
-            return self.at_approach(gap, lowest, None, rtol, edges=edges)
-        estimate = foundation_approach(gap, load, self.modulus, self.cell_area, self.pressure_cap)
-        iterations = 0
-        while True:
-            reach = lowest + scanning.REACH * (estimate - lowest)
-            contact = self.at_approach(gap, reach, start, rtol, load / self.cell_area, edges)
-            iterations += contact.iterations
-            if contact.approach <= reach:
-                return replace(contact, iterations=iterations)
-            estimate, start = contact.approach, contact.pressure
-
-
-@lru_cache
-def _unit_taps(ratio: float) -> Array:
-    """Preconditioning stencil of cells 1 × ratio, π E* being one."""
-    return projected_cg.inverse_stencil(influence_table(32, 32, 1.0, ratio))
-
 
 def _tolerance(rtol: float) -> float:
     return real("rtol", rtol, "a number between 0 and 1, as 1e-6", above=0.0, at_most=BELOW_ONE)
-
-
-def _array(values: ArrayLike) -> Array:
-    """Array of the one kind that kernels are compiled for: contiguous and writable."""
-    return np.require(values, np.float64, ["C", "W"])

@@ -1,4 +1,4 @@
-"""Half-spaces whose grid is one period of an infinite surface: their influence, and contacts at an approach.
+"""Contacts of half-spaces whose grid is one period of an infinite surface, at an approach or under a load.
 
 The mean planes stay where they are: the displacement has no mean. Such an influence is negative far away,
 and pressure may act outside of the overlap. Lifted until it is nowhere negative, it displaces by
@@ -9,59 +9,25 @@ their images.
 """
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from asperity.arguments import Array, require
 from asperity.errors import Outcome
-from asperity.kernels.fourier import smooth_length
 from asperity.written_numbers import rounded
 
 if TYPE_CHECKING:
-    from asperity.contact.halfspace import HalfSpace
+    from asperity.contact.pressed_grid import PressedGrid
     from asperity.contact.solved import Contact
 
-BOUNDARIES = ("free", "periodic")
-"""What `boundary` may be."""
 ROUGHLY = 1e-3
 """Accuracy of the stiffness that a Newton step goes by."""
 HALF = 0.5
 """Share of the tolerance that is left to the pressure, and of it to the approach."""
 
 
-class LiftedTable(NamedTuple):
-    """Influence of pressure on displacement on one period, lifted so far that it is nowhere below zero."""
-
-    table: Array  # (≥ nx, ≥ ny), at non-negative separations, m/Pa
-    lift: float  # what was added to each entry, m/Pa
-
-
-def lifted_table(shape: tuple[int, int], spacing: tuple[float, float], modulus: float) -> LiftedTable:
-    """Make the influence of an (nx, ny) period: a wave of pressure moves the surface by 2/(E* abs(k)) of it.
-
-    Spacing (dx, dy), m; modulus E*, Pa. The sides of the table are transformed fast: beyond a period it
-    repeats itself.
-
-    Notes
-    -----
-    The pressure that pushes a half-space into a wave of wave vector k is E* abs(k)/2 times it (Westergaard
-    1939). On the grid pressure and displacement are the trigonometric polynomials through their values: each
-    wave that the grid holds is exact. Cells of constant pressure would have each multiplied by sinc(kx dx/2)
-    sinc(ky dy/2), and add those that the grid takes for it: on Westergaard's wave of 16 to 128 cells to the
-    length that makes the error of the approach 1.1 to 1.7 times as large, and 1.4 to 3 times where the
-    displacement is averaged over cells, too.
-    """
-    wavenumbers = [2.0 * np.pi * np.fft.fftfreq(n, d) for n, d in zip(shape, spacing, strict=True)]
-    k = np.hypot(wavenumbers[0][:, None], wavenumbers[1][: shape[1] // 2 + 1])
-    k[0, 0] = np.inf  # the mean plane stays
-    table = np.fft.irfft2(2.0 / (modulus * k), s=shape)
-    lift = -float(table.min())
-    rows, columns = (np.arange(smooth_length(max(n, 32))) % n for n in shape)
-    return LiftedTable(np.ascontiguousarray(table[rows][:, columns] + lift), lift)
-
-
-def refuse_period(half_space: "HalfSpace", what: str) -> None:
+def refuse_period(half_space: "PressedGrid", what: str) -> None:
     """Refuse a periodic half-space for what needs a window that moves, or tractions along the surface."""
     require(
         half_space.boundary == "free", f"boundary of the half-space of {what}",
@@ -69,13 +35,9 @@ def refuse_period(half_space: "HalfSpace", what: str) -> None:
     )  # fmt: skip
 
 
-def stiffness_of_lifted(stiffness: float, half_space: "HalfSpace") -> float:
-    """Stiffness dF/dδ, N/m, for the approach of the mean planes from that for the lifted one."""
-    share = 1.0 - stiffness * half_space.lift / half_space.cell_area
-    return stiffness / share if share > 0.0 else np.inf
-
-
-def at_load(half_space: "HalfSpace", gap: Array, load: float, start: Array | None, rtol: float) -> "Contact":
+def at_load(
+    half_space: "PressedGrid", gap: Array, load: float, start: Array | None, rtol: float
+) -> "Contact":
     """Solve a periodic contact under a load, N; arguments checked, silent.
 
     The tolerance is relative to the overlap, which the lifted one exceeds: where that matters, a second
@@ -93,7 +55,7 @@ def at_load(half_space: "HalfSpace", gap: Array, load: float, start: Array | Non
 
 
 def at_approach(
-    half_space: "HalfSpace", gap: Array, approach: float, start: Array | None, rtol: float
+    half_space: "PressedGrid", gap: Array, approach: float, start: Array | None, rtol: float
 ) -> "Contact":
     """Solve a periodic contact at an approach of the mean planes, m; arguments checked but for its limit.
 
@@ -133,7 +95,7 @@ def at_approach(
     return replace(lowered, approach=approach, residual=residual, iterations=iterations)
 
 
-def _flat(half_space: "HalfSpace", gap: Array, load: float) -> "Contact":
+def _flat(half_space: "PressedGrid", gap: Array, load: float) -> "Contact":
     """Contact of parallel planes: the pressure is the same everywhere."""
     untouched = half_space.at_approach(gap, float(gap.min()), None, HALF)
     area = gap.size * half_space.cell_area

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from asperity.arguments import MOST_PASSES, SHAKEDOWN, Array, NDArray
-from asperity.contact.halfspace import HalfSpace
+from asperity.contact.pressed_grid import PressedGrid
 from asperity.contact.scan import Counts, total, warn_of_flaws
 from asperity.errors import UnconvergedWarning
 from asperity.kernels.scanning import TRUNCATED
@@ -26,7 +26,7 @@ PIECE = 256
 class RunningIn:
     """A body to be rolled over a surface, and how often: all that the lowering depends on."""
 
-    half_space: HalfSpace  # grid of the window, (nx, ny) cells; modulus and hardness
+    half_space: PressedGrid  # grid of the window, (nx, ny) cells; modulus and hardness
     body: Array  # (nx, ny), shape of the smooth body, m, zero at its lowest point
     load: float  # N
     passes: int | None  # None for as many as it takes to shakedown
@@ -37,7 +37,7 @@ class RunningIn:
     def tolerance(self) -> float:
         """Lowering that counts as none, m: `SETTLED_SHARE` of the approach of the smooth, elastic bodies."""
         space = self.half_space
-        elastic = HalfSpace(space.shape, space.spacing, space.modulus, cells=space.cells)
+        elastic = PressedGrid(space.shape, space.spacing, space.modulus, cells=space.cells)
         return SETTLED_SHARE * elastic.at_load(self.body, self.load, None, 1e-4).approach
 
     def key(self, heights: Array) -> str:

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from asperity.arguments import Array
-from asperity.errors import Outcome, UnconvergedWarning
+from asperity.errors import Outcome
 from asperity.units import written
 
 if TYPE_CHECKING:
-    from asperity.contact.halfspace import HalfSpace
+    from asperity.contact.elastic_grid import ElasticGrid
     from asperity.surfaces.edges import Edges
 
 BEYOND_RIM = (math.pi - 1.0 + math.log(2.0)) / 24.0
@@ -61,7 +61,7 @@ class Contact:
     iterations: int
     residual: float
     outcome: Outcome
-    half_space: "HalfSpace"
+    half_space: "ElasticGrid"
     undeformed_gap: Array
     edges: "Edges | None" = None
 
@@ -146,8 +146,3 @@ def edge_share(pressure: Any) -> Any:
     edge += pressure[..., 1:-1, :: max(1, ny - 1)].sum(axis=(-2, -1))
     total = pressure.sum(axis=(-2, -1))
     return edge / (total + (total == 0.0))
-
-
-def warn_unconverged(what: str, outcome: Outcome) -> None:
-    """Warn of a solution that did not converge, with advice."""
-    UnconvergedWarning.warn(f"{what} did not converge: {outcome.value}")

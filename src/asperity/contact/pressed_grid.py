@@ -1,0 +1,125 @@
+"""Contacts on the grid of a half-space, solved: at an approach, under a load, and many in a block."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from asperity.arguments import Array
+from asperity.contact.edges import Softness
+from asperity.contact.elastic_grid import MAX_ITERATIONS, ElasticGrid, contiguous
+from asperity.contact.solved import Contact
+from asperity.errors import Outcome
+from asperity.kernels import scanning
+from asperity.kernels.box import foundation_approach
+from asperity.kernels.influence import prepared
+from asperity.surfaces.edges import Edges
+from asperity.threads import refuse_to_go_on
+
+AT_ONCE = 16
+"""Positions between two looks at whether the user wants to stop."""
+
+
+class PressedGrid(ElasticGrid):
+    """Grid whose contacts are solved as they are asked for: unchecked and silent."""
+
+    def at_approach(
+        self,
+        gap: Array,
+        approach: float,
+        start: Array | None,
+        rtol: float,
+        total: float = -1.0,
+        edges: Edges | None = None,
+    ) -> Contact:
+        """Solve at an approach, unchecked and silent; a sum of the pressure, Pa, is negative if not given.
+
+        On a period the approach is the lifted one of `asperity.contact.periodic`, there and in `at_load`.
+        """
+        soft = None if edges is None else self.softness(edges)
+        rows, at = np.zeros(self.shape), np.array([approach])
+        block = self.block(rows, gap, np.zeros(1), at, 0, rtol, load=total, soft=soft)
+        if start is not None:
+            block.pressures[1, 0], block.solved[0] = start, 1
+        self.solve_block(block)
+        pressure, (solved, iterations, unconverged, _) = block.pressures[0, 0], block.counts.tolist()
+        outcome = Outcome.CONVERGED if solved else Outcome.NO_CONTACT
+        if unconverged:
+            outcome = Outcome.ITERATION_LIMIT if iterations >= MAX_ITERATIONS else Outcome.STALLED
+        return Contact(
+            pressure, float(block.totals[0, 0]) * self.cell_area, approach + float(block.levels[0, 0]),
+            self._covered_cells(pressure, edges) * self.cell_area, iterations, float(block.residuals[0, 0]),
+            outcome, self, gap, edges,
+        )  # fmt: skip
+
+    def _covered_cells(self, pressure: Array, edges: Edges | None) -> float:
+        """Number of cells in contact, those at rims as far as they are covered, at edges as far as sound."""
+        if edges is not None:
+            return self.softness(edges).covered_cells(pressure, edges.shares)
+        if self.cells == "whole":
+            return int(np.count_nonzero(pressure))
+        return float(self._rims_of(pressure)[1].sum())
+
+    def block(
+        self,
+        rows: Array,
+        body: Array,
+        planes: Array,
+        approaches: Array,
+        stride: int,
+        rtol: float,
+        single: bool = False,
+        load: float = -1.0,
+        soft: Softness | None = None,
+    ) -> scanning.Block:
+        """Lay out contacts to be solved, with nothing known of them; arguments as in `scanning.Block`.
+
+        In single precision the iteration is half again as fast, down to a tolerance of about 1e-6.
+        """
+        rows, body, planes, approaches = map(contiguous, (rows, body, planes, approaches))
+        if soft is not None:
+            softness, drop, flow = map(contiguous, (soft.softness, soft.drop, soft.flow))
+            soft = Softness(softness, drop, flow, soft.yielding)
+        k, shape, size = len(approaches), self.shape, (len(approaches), len(planes))
+        known = self._known[np.float32 if single else np.float64]
+        return scanning.Block(
+            rows, body, planes, approaches, stride, load, 0.0, self.pressure_cap, rtol, MAX_ITERATIONS,
+            scanning.room(known, *shape, self._sides, soft), np.empty(shape), np.empty(shape),
+            np.zeros((2, *shape)),
+            np.zeros((2, k, *shape)), np.zeros(k, dtype=np.int64), np.zeros(size), np.zeros(size),
+            np.zeros(size), np.zeros(4, dtype=np.int64),
+        )  # fmt: skip
+
+    def solve_block(self, block: scanning.Block) -> scanning.Block:
+        """Solve the contacts of a block, each from what is known of those before; unchecked and silent.
+
+        Threads share the convolutions that are prepared: at worst one overwrites what another has prepared,
+        which then comes again.
+        """
+        position, level, count, precision = 0, 0, len(block.planes), block.room.outer.dtype.type
+        while position < count:
+            refuse_to_go_on()
+            end, known = min(position + AT_ONCE, count), self._known[precision]
+            position, level, nx, ny = scanning.solve_positions(known, block, position, level, end)
+            if position < end:
+                self._known[precision] = prepared(self._known[precision], nx, ny)
+        return block
+
+    def at_load(
+        self, gap: Array, load: float, start: Array | None, rtol: float, edges: Edges | None = None
+    ) -> Contact:
+        """Solve at a given load as `solve` does, unchecked and silent: look at `converged`.
+
+        The overlap at an estimated approach is all that needs a grid.
+        """
+        lowest = float(gap.min())
+        if load == 0.0:
+            return self.at_approach(gap, lowest, None, rtol, edges=edges)
+        estimate = foundation_approach(gap, load, self.modulus, self.cell_area, self.pressure_cap)
+        iterations = 0
+        while True:
+            reach = lowest + scanning.REACH * (estimate - lowest)
+            contact = self.at_approach(gap, reach, start, rtol, load / self.cell_area, edges)
+            iterations += contact.iterations
+            if contact.approach <= reach:
+                return replace(contact, iterations=iterations)
+            estimate, start = contact.approach, contact.pressure
