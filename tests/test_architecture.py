@@ -5,6 +5,7 @@ import re
 import subprocess
 import sys
 from functools import cache
+from importlib.util import resolve_name
 from pathlib import Path
 
 import pytest
@@ -32,6 +33,89 @@ def test_imports_point_one_way():
         cwd=ROOT, capture_output=True, text=True,
     )  # fmt: skip
     assert done.returncode == 0, done.stdout
+
+
+TAKEN = re.compile(r"""\b(?:from|import)\s*\(?\s*["'](\.{1,2}/[^"']+)["']""")
+"""What a script takes from another file, at its top or when it is needed."""
+CIRCLES_LEFT = [
+    {"case/across.py", "case/chosen_lengths.py", "case/scene.py", "case/time_steps.py"},
+    {
+        *("case/any_case.py", "case/beside.py", "case/documented.py", "case/form.py"),
+        *("case/ready_lists.py", "case/speed.py", "case/tables.py", "case/toml.py"),
+    },
+    {"serving/contact.js", "serving/form.js"},
+    {"surfaces/cleaning.py", "surfaces/heightmap.py", "surfaces/levelling.py"},
+]
+"""Circles of files that are still to be broken."""
+
+
+def file_of(name, root):
+    """The file of a module by its name with dots, the first of which is that of the root; else None."""
+    path = root.parent.joinpath(*name.split("."))
+    return next((each for each in (path.with_suffix(".py"), path / "__init__.py") if each.is_file()), None)
+
+
+def taken_by(path, root):
+    """Files that a file imports: at its top, inside functions, or for its annotations alone."""
+    if path.suffix == ".js":
+        return {(path.parent / each).resolve() for each in TAKEN.findall(path.read_text(encoding="utf-8"))}
+    package = ".".join(path.relative_to(root.parent).parent.parts)
+    found = set()
+    for node in ast.walk(parsed(path)[1]):
+        if isinstance(node, ast.Import):
+            found |= {file_of(each.name, root) for each in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            of = resolve_name("." * node.level + (node.module or ""), package)
+            found |= {file_of(f"{of}.{each.name}", root) or file_of(of, root) for each in node.names}
+    return found - {None}
+
+
+def circles_in(root):
+    """Sets of files of which each leads to all the others by what it imports; of one that leads to itself."""
+    takes = {path: taken_by(path, root) for path in (*root.rglob("*.py"), *root.rglob("*.js"))}
+    leads = {}
+    for path in takes:
+        leads[path], ahead = set(), [path]
+        while ahead:
+            further = takes.get(ahead.pop(), set()) - leads[path]
+            leads[path] |= further
+            ahead += further
+    inside = (frozenset(each for each in leads[path] if path in leads.get(each, ())) for path in takes)
+    return [{each.relative_to(root).as_posix() for each in circle} for circle in {*inside} if circle]
+
+
+def test_no_files_import_each_other_in_a_circle():
+    found = circles_in(SOURCE)
+    left = [circle for circle in found if not any(circle <= known for known in CIRCLES_LEFT)]
+    assert not left, "\n".join(" ".join(sorted(circle)) for circle in left)
+
+
+@pytest.mark.parametrize(
+    ("upper", "lower", "together"),
+    [
+        ("from house import b", "import house.a", {"a.py", "b.py"}),
+        ("from house.b import B", "def f():\n    from house.a import A", {"a.py", "b.py"}),
+        (
+            "import house.b as b",
+            "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from . import a",
+            {"a.py", "b.py"},
+        ),
+        (
+            "class A:\n    def f(self):\n        from .b import B",
+            "from .c import C",
+            {"a.py", "b.py", "c.py"},
+        ),
+    ],
+)
+def test_a_circle_of_files_is_found_wherever_its_imports_stand(tmp_path, upper, lower, together):
+    house = tmp_path / "house"
+    house.mkdir()
+    for name, text in {"__init__": "", "a": upper, "b": lower, "c": "from house.a import A"}.items():
+        (house / f"{name}.py").write_text(text, encoding="utf-8")
+    (house / "d.js").write_text('import { f } from "./e.js";', encoding="utf-8")
+    (house / "e.js").write_text('const late = () => import("./f.js");', encoding="utf-8")
+    (house / "f.js").write_text('import "./d.js";', encoding="utf-8")
+    assert sorted(circles_in(house), key=sorted) == [together, {"d.js", "e.js", "f.js"}]
 
 
 LATE = [f"scipy.{name}" for name in ("optimize", "interpolate", "ndimage", "signal", "stats", "sparse")]
