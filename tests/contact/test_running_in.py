@@ -60,6 +60,15 @@ def test_shakedown_leaves_a_surface_whose_next_pass_is_elastic():
         assert after < 1.02 * HARD  # what the tolerance leaves
 
 
+@pytest.mark.parametrize("cells", ["whole", "covered"])
+def test_what_counts_as_no_lowering_is_a_share_of_the_elastic_approach_on_the_same_cells(cells):
+    own = HalfSpace((41, 41), DX, STEEL, HARD, cells=cells)
+    elastic = HalfSpace((41, 41), DX, STEEL, cells=cells).solve(ball(), load=LOAD, rtol=1e-9)
+    found = RunningIn(own, ball(), LOAD, None).tolerance
+    solved_to = 1e-4  # residual over the overlap: enough for what shall be no lowering
+    assert found == pytest.approx(1e-3 * elastic.approach, rel=solved_to, abs=0.0)
+
+
 def test_each_pass_lowers_less_and_the_yielded_share_is_of_what_was_touched():
     job = RunningIn(half_space(), ball(), LOAD, 4)
     found = run_in(rough(100), job)

@@ -257,6 +257,16 @@ def test_the_largest_interference_that_is_named_is_allowed():
         B6205.with_(clearance=1.01 * most)
 
 
+@pytest.mark.parametrize(("share", "told"), [(0.98, False), (1.02, True)])
+def test_a_fit_that_fatigues_steel_unloaded_is_told(share, told, recwarn):
+    """From 1.5 GPa on, the fatigue load limit of ISO 281; of Hertz's contacts it grows as the root of δ."""
+    load = TIGHT.interference_force(2e-6)
+    contacts = TIGHT.inner_contact, TIGHT.outer_contact
+    peak = max(each.peak_pressure(each.approach(load)) for each in contacts)
+    TIGHT.with_(clearance=share * TIGHT.clearance * (1.5e9 / peak) ** 2).loaded(radial=100.0)
+    assert any("ISO 281" in str(each.message) for each in recwarn) == told
+
+
 test_loads_that_cannot_be = refusals(
     ({}, "load: received none; allowed: a radial or axial load, or a preload"),
     ({"radial": -1.0}, "radial load"),
