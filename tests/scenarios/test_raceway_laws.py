@@ -119,9 +119,9 @@ def test_heights_are_pressed_as_means_across_the_end_of_a_turn():
     assert np.std(found - turns[n - 3 : 2 * n + 3]) > 1e-3 * np.std(heights)
 
 
-@pytest.mark.parametrize(("rms", "rows"), [(30 * NM, 6), (80 * NM, 4)])
+@pytest.mark.parametrize(("rms", "rows"), [(30 * NM, 4), (80 * NM, 3)])
 def test_positions_on_smooth_raceways_have_the_levels_of_every_row(rms, rows):
-    """On waves of two half axes and more: a little shorter ones a patch hardly feels, and here are few."""
+    """On waves of 1.6 half axes and more."""
     texture = AroundTexture(roughness=rms, longest=0.3 * MM, shortest=0.06 * MM)
     surface = raceway_on(CONTACT, LOAD, 2.5 * MM, texture, seed=4)
     wave = 1.6 * ALONG
@@ -133,7 +133,7 @@ def test_positions_on_smooth_raceways_have_the_levels_of_every_row(rms, rows):
     exact, found = (force(each.build("table", states), places, APPROACH) for each in (every, on))
     exact, found = (np.abs(np.fft.rfft(each)) ** 2 for each in (exact, found))
     waves = surface.circumference / np.arange(1, len(exact))
-    for longest in wave * 2.0 ** (np.arange(2, 7) / 3):
+    for longest in wave * 2.0 ** (np.arange(1, 7) / 3):
         band = np.append(False, (waves <= longest) & (waves > longest / 2.0 ** (1 / 3)))
         assert abs(10.0 * np.log10(found[band].sum() / exact[band].sum())) < 0.1
 
@@ -170,7 +170,7 @@ def test_force_closes_around_a_rough_raceway():
 
 def test_states_and_positions_that_a_motion_asks_for_have_the_forces_of_all():
     surface = rough(20 * NM, radius=0.1 * MM)
-    every, on = (OnRaceway(CONTACT, surface, LOAD, shortest=wave) for wave in (0.0, 0.6 * ALONG))
+    every, on = (OnRaceway(CONTACT, surface, LOAD, shortest=wave) for wave in (0.0, 0.8 * ALONG))
     assert on.scanned_stride == 2 * every.scanned_stride
     states = on.states_under(0.8 * LOAD, LOAD)
     few, whole = on.build("table", states), every.build("table")

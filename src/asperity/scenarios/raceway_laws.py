@@ -51,7 +51,7 @@ REMEDIES = "accuracy", "A smaller time step, or a larger static load: windows ho
 """For contacts solved in every step on raceways."""
 SAMPLES = 8
 """Places of a rough raceway whose mean is its force curve."""
-ON_SMOOTH = {0.025: (1.3, 1.8), SMOOTH: (1.6, 2.7)}
+ON_SMOOTH = {0.025: (1.6, 2.7), SMOOTH: (2.5, 3.0)}
 """Positions in a half axis, and in the shortest wave that is looked at, at most, by `roughness` up to which.
 
 Planes hold what is of first order at every row: positions are for the second order alone, which is the less
@@ -131,8 +131,8 @@ class OnRaceway:
     def scanned_stride(self) -> int:
         """Rows between positions of the scan, whole strides: those of a path, see `table_stride`.
 
-        On waves from 1.7 half axes on those of `ON_SMOOTH` have the levels of a position in every second row
-        within 0.06 dB.
+        On waves from 1.6 half axes on those of `ON_SMOOTH` have the levels of a position in every row within
+        0.1 dB.
         """
         if self.surface.damaged.any():
             return self.stride
