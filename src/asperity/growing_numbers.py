@@ -17,7 +17,7 @@ class GrowingNumbers:
 
     def __init__(self) -> None:
         self._blocks = list[NDArray[Any]]()
-        self._last = np.empty(BLOCK)
+        self._last = np.empty(0)  # a block from the first numbers on
         self._used = 0
         self._count = 0
 
@@ -28,6 +28,8 @@ class GrowingNumbers:
         """Add numbers of any shape, row by row."""
         left = np.asarray(values, dtype=np.float64).reshape(-1)
         self._count += left.size
+        if left.size and not self._last.size:
+            self._last = np.empty(BLOCK)
         while left.size:
             some = left[: BLOCK - self._used]
             self._last[self._used : self._used + some.size] = some

@@ -70,7 +70,7 @@ def new(kind: str, laws: tuple[str, ...]) -> None:
 @_begin(
     "What is in a measured file: size, statistics, spectrum, picture.",
     params=commands.SURFACE,
-    does="surface.show_surface",
+    does="asperity.cli.surface.show_surface",
 )
 @click.argument("file", type=PATH)
 @commands.picture("The picture. [default: NAME-surface.png here, with array and index in its name]")
@@ -96,7 +96,10 @@ def surface() -> None:
 
 
 @_begin(
-    "Modes of a wheel by the drawing of its section.", document=False, long_work=True, does="wheel.show_wheel"
+    "Modes of a wheel by the drawing of its section.",
+    document=False,
+    long_work=True,
+    does="asperity.cli.wheel.show_wheel",
 )
 @click.argument("section")
 @click.option("--highest", metavar="FREQUENCY", help="Upper end of the spectra. [default: 5 kHz]")
@@ -123,7 +126,7 @@ def wheel() -> None:
     "What a bearing carries, its tones, and what its signal says.",
     params=commands.BEARING,
     long_work=True,
-    does="bearing.show_bearing",
+    does="asperity.cli.bearing.show_bearing",
 )
 @click.argument("bearing", metavar="NAME|FILE", required=False)
 @click.argument("more", type=PATH, nargs=-1, metavar="[SIGNAL]...")
@@ -171,7 +174,7 @@ def bearing() -> None:
     params=commands.CREEP,
     document=False,
     long_work=True,
-    does="creep.show_creep",
+    does="asperity.cli.creep.show_creep",
 )
 @click.argument("case", type=PATH)
 @commands.picture("Draw it to a file, .svg, .pdf or .png.")

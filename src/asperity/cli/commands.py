@@ -72,8 +72,8 @@ class Command(click.Command):
     long_work : bool
         Whether it can be told to say less or more of what it does.
     does : str
-        Function of `asperity.cli` that does it, by its module and name, which takes arguments and options by
-        their names; it is imported when it runs. Without one the command does what stands below its help.
+        Function that does it, by its module and name, which takes arguments and options by their names;
+        it is imported when it runs. Without one the command does what stands below its help.
     """
 
     def __init__(
@@ -88,7 +88,7 @@ class Command(click.Command):
         super().__init__(*arguments, **settings)
         self.section = section
         if does:
-            self.callback = partial(_do, f"asperity.cli.{does}")
+            self.callback = partial(_do, does)
         text = inspect.cleandoc(self.help or "").replace("KINDS", ", ".join(kinds()))
         text = text.replace("KIND", next(iter(kinds())))
         self.help, _, self.examples = text.partition("\n\nExamples\n--------\n")

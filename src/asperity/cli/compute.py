@@ -130,7 +130,7 @@ def study(
 @_compute(
     "Find the texture that rolls quietest within bounds.",
     long_work=True,
-    does="optimising.run_optimisation",
+    does="asperity.cli.optimising.run_optimisation",
 )
 @click.argument("optimisation", type=PATH)
 @commands.run_folder

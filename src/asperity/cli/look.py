@@ -53,7 +53,7 @@ def serve(port: int, directory: Path) -> None:
     "Write the report of a run again, or a summary of one page.",
     name="report",
     document=False,
-    does="results.report_again",
+    does="asperity.cli.results.report_again",
 )
 @commands.run_argument
 @click.option(
@@ -72,7 +72,11 @@ def report_again() -> None:
     """
 
 
-@_look("Draw the figures of a run to files, for a paper.", document=False, does="results.draw_figures")
+@_look(
+    "Draw the figures of a run to files, for a paper.",
+    document=False,
+    does="asperity.cli.results.draw_figures",
+)
 @commands.run_argument
 @click.argument("names", nargs=-1, metavar="[NAME]...")
 @click.option(
@@ -102,7 +106,7 @@ def figures() -> None:
 @_look(
     "What differs between runs: cases, levels, force, stiffness.",
     document=False,
-    does="results.compare_runs",
+    does="asperity.cli.results.compare_runs",
 )
 @click.argument("runs", nargs=-1, type=PATH, required=True)
 @output(
@@ -125,7 +129,11 @@ def compare() -> None:
     """
 
 
-@_look("Write what a run sounds like, as WAV files.", params=commands.LISTEN, does="results.write_sounds")
+@_look(
+    "Write what a run sounds like, as WAV files.",
+    params=commands.LISTEN,
+    does="asperity.cli.results.write_sounds",
+)
 @commands.run_argument
 @output("Folder of the sounds. [default: sounds, beside the run]")
 def listen() -> None:
@@ -143,7 +151,7 @@ def listen() -> None:
 @_look(
     "Write signals of a run as programs of measurement read them.",
     params=commands.WRITTEN,
-    does="results.write_measured",
+    does="asperity.cli.results.write_measured",
 )
 @commands.run_argument
 @output("Folder of the signals. [default: signals, beside the run]")
@@ -181,7 +189,7 @@ def cite(run: Path) -> Document:
 # --- around it
 
 
-@_around("Show or delete what is kept between runs.", does="results.show_cache")
+@_around("Show or delete what is kept between runs.", does="asperity.cli.results.show_cache")
 @click.option("--clear", is_flag=True, help="Delete what is kept; it is computed again when it is needed.")
 def cache() -> None:
     """Show what is kept: finished pieces of work, compiled functions, and what interrupted runs left.
