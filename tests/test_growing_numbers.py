@@ -23,9 +23,10 @@ from asperity.growing_numbers import BLOCK, GrowingNumbers
 ])  # fmt: skip
 def test_numbers_are_as_they_were_to_the_last_bit(values, bytes_each):
     numbers = GrowingNumbers()
+    numbers.extend(values[:1])  # beside the block
     tracemalloc.start()
     try:
-        for first, last in pairwise([*range(0, values.size, 999), values.size]):
+        for first, last in pairwise([*range(1, values.size, 999), values.size]):
             numbers.extend(values[first:last])
         assert len(numbers) == values.size
         held = tracemalloc.get_traced_memory()[0]
