@@ -288,7 +288,8 @@ def _sifted(
     )
     there = seen and not others
     heard = others if seen else ()
-    turning = (told, resolution, seen, heard, deepest if once else 0.0)
+    rub = deepest if once else 0.0
+    turning = (told, resolution, seen, heard, rub)
     of_turns = [each for each in struck if of_shaft_or_mains(record, each, *turning)]
     struck = [each for each in struck if each not in of_turns]
     seen_at = record.speed(shaft)
@@ -310,7 +311,9 @@ def _sifted(
         others=heard,
         basis=Basis("sound" if seen else "nothing", turns),
         once_in_a_turn=any(
-            once_in_a_turn(record, each, speed, resolution) for each in of_turns for speed in (told, *heard)
+            once_in_a_turn(record, each, speed, resolution)
+            for each in of_turns
+            for speed in (told, *heard, *([rub] if rub else []))
         ),
         resolution=resolution,
         record=record,
