@@ -1,7 +1,6 @@
 // The form that becomes a case, the sliders of what is changed most, and the surfaces it may name.
 
 import { ask, find, make } from "./asking.js";
-import { pressAnew } from "./contact.js";
 
 export const kind = find("kind");
 export const form = () => document.querySelector(`.case-form[data-kind="${kind.value}"]`);
@@ -109,13 +108,14 @@ export function recall() {
   setSliders();
 }
 
+// Whoever follows the case hears of it by an event, once nothing is typed for a moment.
 let later;
 export function changed(slid = false) {
   arrange();
   remember();
   if (!slid) setSliders();
   clearTimeout(later);
-  later = setTimeout(pressAnew, slid ? 0 : 250);
+  later = setTimeout(() => document.dispatchEvent(new Event("case-changed")), slid ? 0 : 250);
 }
 
 // ---- sliders: a number of the form, from a tenth of it to ten times as much, or 20 dB less and more ------------

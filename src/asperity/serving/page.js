@@ -37,6 +37,7 @@ function listenToPictures() {
   find("law").onchange = (event) => { shown.law = event.target.value; drawWatch(); };
   find("sound").onchange = hear;
   find("position").oninput = (event) => { shown.at = Number(event.target.value); drawWatch(); };
+  document.addEventListener("case-changed", pressAnew);
   addEventListener("hashchange", listAnew);
   const redraw = () => { redrawContact(); drawWatch(); };
   addEventListener("resize", redraw);
