@@ -11,7 +11,7 @@ from asperity.case.surface import Recipe, read_recipe
 from asperity.cli import main
 from asperity.errors import CaseError, InputError
 from asperity.scenarios.records import read_maps
-from asperity.surfaces import heightmap, levelling
+from asperity.surfaces import heightmap, levelling, rotation
 from refusals import refusals
 
 BEGUN = """height_unit = "um"
@@ -52,7 +52,7 @@ def test_a_stored_recipe_gives_a_case_the_map_of_the_command_line(measured, tmp_
     found = read_maps(parse_case(case('recipe = "recipe.toml"'), tmp_path / "case.toml").surface)[0]
     surface = heightmap.HeightMap(measured * 1e-6, (2e-6, 2e-6)).without_spikes().transposed().filled()
     surface = levelling.level(surface.crop((10e-6, 20e-6), (180e-6, 160e-6)), 2)
-    expected = levelling.rotated(levelling.band_limit(surface, longest=1e-4, shortest=8e-6), np.radians(30.0))
+    expected = rotation.rotated(levelling.band_limit(surface, longest=1e-4, shortest=8e-6), np.radians(30.0))
     assert found.spacing == expected.spacing
     np.testing.assert_array_equal(found.heights, expected.heights)
     points = " × ".join(map(str, expected.shape))

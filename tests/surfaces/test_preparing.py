@@ -10,7 +10,8 @@ from scipy.sparse import linalg
 from asperity import BallOnBeam, HeightMap, Profile, read_surface
 from asperity.errors import CaseError, MissingPointsWarning, ShortRecordWarning
 from asperity.surfaces.cleaning import fill, spikes, without_spikes
-from asperity.surfaces.levelling import band_limit, inscribed, level, resample, rotated
+from asperity.surfaces.levelling import band_limit, level, resample
+from asperity.surfaces.rotation import inscribed, rotated
 from asperity.surfaces.spectra import texture_direction
 from asperity.surfaces.synthesis import self_affine
 from refusals import refusals

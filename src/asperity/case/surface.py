@@ -30,9 +30,9 @@ from asperity.parameters import (
     optional,
 )
 from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.surfaces.levelling import rotated
 from asperity.surfaces.readers import read_all
 from asperity.surfaces.readers.hints import spell
+from asperity.surfaces.rotation import rotated
 from asperity.units import factor, written
 from asperity.written_numbers import count_of
 

@@ -19,10 +19,11 @@ from asperity.spectra import HALF_BAND, nominal_length
 from asperity.surfaces import measured_lines, synthesis
 from asperity.surfaces.bands import SAMPLES, strip_from_bands
 from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.surfaces.levelling import QUARTER, band_limit, level, resample, rotated
+from asperity.surfaces.levelling import band_limit, level, resample
 from asperity.surfaces.readers import read_all, read_surface
 from asperity.surfaces.readers.belief import larger_reading, told_length
 from asperity.surfaces.readers.hints import in_case, spelled
+from asperity.surfaces.rotation import QUARTER, rotated
 from asperity.surfaces.strip import Rows, Strip
 from asperity.written_numbers import count_of, rounded
 

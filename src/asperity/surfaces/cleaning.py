@@ -2,7 +2,7 @@
 
 import warnings
 from dataclasses import replace
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 import numpy as np
 import scipy
@@ -10,12 +10,10 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from asperity.arguments import Array, Flags
 from asperity.errors import MissingPointsWarning
+from asperity.surfaces.even_heights import EvenHeights
 from asperity.written_numbers import count_of
 
-if TYPE_CHECKING:
-    from asperity.surfaces.heightmap import HeightMap, Heights
-
-S = TypeVar("S", bound="Heights")
+S = TypeVar("S", bound=EvenHeights)
 
 FILLED_SHARE_WARNED = 0.05
 
@@ -77,7 +75,7 @@ def nearly_complete(surface: S) -> S | None:
     return fill(surface, lines=False) if surface.missing_share <= FILLED_SHARE_WARNED else None
 
 
-def spikes(surface: "HeightMap") -> Flags:
+def spikes(surface: EvenHeights) -> Flags:
     """Find the spikes of a map: Hampel's identifier on the distance from the local median.
 
     A point is a spike if it is farther from the median of its 5 × 5 neighbours than `FARTHEST`
@@ -105,7 +103,7 @@ def spikes(surface: "HeightMap") -> Flags:
     return distance > FARTHEST * MAD * _typical(distance)
 
 
-def without_spikes(surface: "HeightMap") -> "HeightMap":
+def without_spikes(surface: S) -> S:
     """Take the spikes of a map away: they become points without a height; `source` says how many."""
     spiky = spikes(surface)
     count = int(np.count_nonzero(spiky))

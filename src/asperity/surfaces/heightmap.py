@@ -6,51 +6,23 @@ import base64
 import io
 from dataclasses import dataclass, replace
 from html import escape
-from typing import Any, Self
+from typing import Self
 
 import numpy as np
 
 from asperity.arguments import Array, ArrayLike, real, real_array, require, two, two_lengths, whole
 from asperity.errors import percent, printable
 from asperity.surfaces import cleaning, levelling
+from asperity.surfaces.even_heights import EvenHeights
 from asperity.units import written
 
 PICTURE_POINTS = 600
 """Points along each side of the picture that a notebook shows, at most."""
-MOST_LINES = 32
-"""Lines side by side, at most, that a bare array is taken for without being told."""
-SLENDER = 20.0
-"""Times longer than wide, in points, that such an array is at least."""
 
 
 @dataclass(frozen=True, eq=False)
-class Heights:
+class Heights(EvenHeights):
     """What maps and lines have in common."""
-
-    heights: Array
-    spacing: Any
-    source: str = ""
-
-    @property
-    def x(self) -> Array:
-        """Coordinates (nx,) along the rolling direction in m, from zero."""
-        return np.arange(len(self.heights), dtype=np.float64) * float(np.atleast_1d(self.spacing)[0])
-
-    @property
-    def missing_share(self) -> float:
-        """Share of the points without a height, 0 to 1."""
-        return float(np.isnan(self.heights).mean())
-
-    @property
-    def holds_lines(self) -> bool:
-        """Whether the shape is that of an array of lines measured side by side rather than of a map.
-
-        At most 32 lines, each with at least 20 times as many points; such a file knows no distance across of
-        lines.
-        """
-        few = min(self.heights.shape)
-        many = max(self.heights.shape)
-        return self.heights.ndim == 2 and few <= MOST_LINES and many >= SLENDER * few
 
     def levelled(self, degree: int | str = "plane") -> Self:
         """Return the heights less their least-squares polynomial form.
