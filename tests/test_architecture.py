@@ -38,7 +38,6 @@ def test_imports_point_one_way():
 TAKEN = re.compile(r"""\b(?:from|import)\s*\(?\s*["'](\.{1,2}/[^"']+)["']""")
 """What a script takes from another file, at its top or when it is needed."""
 CIRCLES_LEFT = [
-    {"case/across.py", "case/chosen_lengths.py", "case/scene.py", "case/time_steps.py"},
     {
         *("case/any_case.py", "case/beside.py", "case/documented.py", "case/form.py"),
         *("case/ready_lists.py", "case/speed.py", "case/tables.py", "case/toml.py"),

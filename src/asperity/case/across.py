@@ -22,7 +22,7 @@ from asperity.surfaces.readers.belief import told_length
 from asperity.written_numbers import count_of, rounded
 
 if TYPE_CHECKING:
-    from asperity.case.scene import Case
+    from asperity.case.rolling_case import RollingCase
     from asperity.contact.hertz import Hertz
 
 REACH = 0.1
@@ -398,7 +398,7 @@ def _lying(
     return Lying(spline, turned, way != 0, measured is not None, tuple(doubts), bool(others))
 
 
-def meeting_of(case: Case, clear: float | None = None) -> Meeting:
+def meeting_of(case: RollingCase, clear: float | None = None) -> Meeting:
     """Lay the sections of what rolls, and of what is rolled over, together: levelled, or as they lie.
 
     As they lie, where the inclination of a rail towards the middle of the track is given. They meet at least
@@ -423,12 +423,12 @@ def meeting_of(case: Case, clear: float | None = None) -> Meeting:
     return Meeting.of(upper, lower, f"{tread} and {head}", clear)
 
 
-def section_keys(case: Case) -> tuple[str, str]:
+def section_keys(case: RollingCase) -> tuple[str, str]:
     """Keys of the sections of what rolls and of what is rolled over, across the path."""
     return f"{case.ROLLING}.profile", f"{case.over_name}.rail_profile"
 
 
-def turned_sections(case: Case, met: Meeting) -> list[str]:
+def turned_sections(case: RollingCase, met: Meeting) -> list[str]:
     """Say which sections were turned, in a sentence each."""
     lowest = ("its flange was the lowest", "its corners were the highest")
     told = zip(section_keys(case), (met.tread, met.head), lowest, strict=True)

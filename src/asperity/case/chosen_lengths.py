@@ -3,13 +3,14 @@
 import math
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from typing import TYPE_CHECKING
+from typing import TypeVar
 
+from asperity.case.any_case import AnyCase
+from asperity.case.rolling_case import RollingCase
+from asperity.contact.hertz import Hertz
 from asperity.errors import InputError
 
-if TYPE_CHECKING:
-    from asperity.case.scene import Case
-    from asperity.contact.hertz import Hertz
+C = TypeVar("C", bound=AnyCase)
 
 CELLS = 9.0
 """Cells in the smaller semi-axis of the smooth contact, at least."""
@@ -34,7 +35,7 @@ _FIT_FOR_ALL = {
 """Which of several chosen lengths suits all cases."""
 
 
-def chosen_lengths(case: "Case") -> dict[str, dict[str, float]]:
+def chosen_lengths(case: RollingCase) -> dict[str, dict[str, float]]:
     """Grid, window and waves of a self-affine texture, m, by section: as given, else as fits the contact.
 
     The contact of smooth bodies under the working load is taken for the circle of mean relative radius, drawn
@@ -70,13 +71,13 @@ def chosen_lengths(case: "Case") -> dict[str, dict[str, float]]:
     return {"surface": surface, "contact": {"spacing": spacing, "window": window}}
 
 
-def _longest_wave(case: "Case", least: float) -> float:
+def _longest_wave(case: RollingCase, least: float) -> float:
     """Longest wave, m: that of what is rolled over, whatever rolls, in tens of it where that is too short."""
     longest = case.rolled_over.LONGEST_WAVE
     return float(longest * 10.0 ** max(0, math.ceil(math.log10(least / longest) - 1e-9)))
 
 
-def _contact_across(case: "Case") -> "tuple[Hertz, float]":
+def _contact_across(case: RollingCase) -> tuple[Hertz, float]:
     """Contact of the smooth bodies, by their measured sections, and how wide a window these hold, m."""
     hertz = case.smooth_contact
     if case.rolling.groove_radius is not None or (
@@ -101,13 +102,13 @@ def preferred_length(length: float, *, up: bool = False) -> float:
     return max(each for each in lengths if each <= length * (1 + 1e-9))
 
 
-def with_chosen(case: "Case", chosen: Mapping[str, Mapping[str, float]]) -> "Case":
+def with_chosen(case: C, chosen: Mapping[str, Mapping[str, float]]) -> C:
     """Return a case with lengths, m, by section, where it gives none; they do not count as given."""
     sections = {title: getattr(case, title).with_chosen(**lengths) for title, lengths in chosen.items()}
     return case.with_chosen(**sections)
 
 
-def shared_lengths(cases: "Sequence[Case]") -> dict[str, float]:
+def shared_lengths(cases: Sequence[AnyCase]) -> dict[str, float]:
     """Lengths that were chosen otherwise for some of these cases than for others, fit for all of them, m."""
     shared = {}
     for key, fit in _FIT_FOR_ALL.items():

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from asperity.case.rolled_over import TrackKeys
+from asperity.case.rolling_case import RollingCase
 from asperity.errors import InputError, PhysicsWarning
 from asperity.rolling.resolution import PER_MODE, PER_RESONANCE, PER_RESONANCE_ON_RAIL, PER_SLEEPER
 from asperity.structures.track import Track
 
 if TYPE_CHECKING:
-    from asperity.case.scene import Case
     from asperity.structures.modal import Modal
 
 SPARE = 1.1
@@ -35,7 +35,7 @@ def on_grid(wanted: float, per_cell: float) -> float:
     return per_cell / nearest
 
 
-def resolving(case: "Case", usual: float) -> float:
+def resolving(case: RollingCase, usual: float) -> float:
     """A time step as usual, s, or the longest on the grid with which no run doubts what it resolves."""
     longest = longest_step(case, usual)
     step = usual
@@ -50,7 +50,7 @@ def resolving(case: "Case", usual: float) -> float:
     return step
 
 
-def longest_step(case: "Case", step: float) -> float:
+def longest_step(case: RollingCase, step: float) -> float:
     """Time in s up to which a step of about this length, s, is short for all that it has to resolve."""
     over = case.rolled_over
     hertz = case.smooth_contact
@@ -73,18 +73,18 @@ def longest_step(case: "Case", step: float) -> float:
             return math.inf
 
 
-def _wanted(mode: float, resonance: float, case: "Case") -> float:
+def _wanted(mode: float, resonance: float, case: RollingCase) -> float:
     """Time steps in a second that a mode of a structure and the contact resonance on it ask for, Hz each."""
     return max(PER_MODE * mode, PER_RESONANCE * max(resonance, case.contact_resonance))
 
 
-def _resonance(case: "Case", stiffness: float, inverse_mass: float) -> float:
+def _resonance(case: RollingCase, stiffness: float, inverse_mass: float) -> float:
     """Natural frequency, Hz, of what rolls on contacts, N/m, on what moves like so much per mass, 1/kg."""
     rolling = 1.0 / case.rolling.contact_mass
     return math.sqrt(stiffness * (rolling + len(case.rolling.offsets) * inverse_mass)) / (2.0 * math.pi)
 
 
-def _looked_at(case: "Case", model: "Modal", stiffness: float, step: float) -> tuple[float, float]:
+def _looked_at(case: RollingCase, model: "Modal", stiffness: float, step: float) -> tuple[float, float]:
     """Highest mode of a structure, and the contact resonance on it, Hz, as a run finds them for a step, s."""
     from asperity.rolling import steps
     from asperity.structures.modal import HIGHEST

@@ -9,7 +9,8 @@ import numpy as np
 
 from asperity.arguments import Array
 from asperity.case.form import name_of
-from asperity.case.scene import SETTLED, Case
+from asperity.case.rolling_case import SETTLED
+from asperity.case.scene import Case
 from asperity.case.sections import ContactKeys
 from asperity.case.surface import Surface
 from asperity.errors import InputError, OutOfRangeWarning, ShortRecordWarning, TruncatedContactWarning
