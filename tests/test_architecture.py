@@ -37,13 +37,6 @@ def test_imports_point_one_way():
 
 TAKEN = re.compile(r"""\b(?:from|import)\s*\(?\s*["'](\.{1,2}/[^"']+)["']""")
 """What a script takes from another file, at its top or when it is needed."""
-CIRCLES_LEFT = [
-    {
-        *("case/any_case.py", "case/beside.py", "case/documented.py", "case/form.py"),
-        *("case/ready_lists.py", "case/speed.py", "case/tables.py", "case/toml.py"),
-    },
-]
-"""Circles of files that are still to be broken."""
 
 
 def file_of(name, root):
@@ -83,8 +76,7 @@ def circles_in(root):
 
 def test_no_files_import_each_other_in_a_circle():
     found = circles_in(SOURCE)
-    left = [circle for circle in found if not any(circle <= known for known in CIRCLES_LEFT)]
-    assert not left, "\n".join(" ".join(sorted(circle)) for circle in left)
+    assert not found, "\n".join(" ".join(sorted(circle)) for circle in found)
 
 
 @pytest.mark.parametrize(

@@ -1,24 +1,24 @@
 """The case of any kind: its keys in and out of TOML, other values for some; and what computes it."""
 
-import re
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from html import escape
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, NoReturn, Protocol, Self, runtime_checkable
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol, Self, runtime_checkable
 
 from asperity import files
 from asperity.arguments import FilePath, file_path, nearest, require, shown
+from asperity.case.beside import arrays_and_keys, refused
 from asperity.case.documented import allowed_in
-from asperity.case.form import Inner, Section, content, described_value, holds_memory
+from asperity.case.form import Inner, Section, content, in_toml
+from asperity.case.in_memory import described_value
 from asperity.case.ready_lists import NamedChanges
-from asperity.case.speed import written_course
 from asperity.case.toml import toml_text, toml_value
+from asperity.case.written_values import in_words
 from asperity.errors import InputError
 from asperity.laws import family_of, law_keys, names, spec_of
 from asperity.parameters import (
-    GIVEN,
     Choice,
     Key,
     Number,
@@ -27,14 +27,8 @@ from asperity.parameters import (
     Quantity,
     Text,
     key,
-    name_of_numbers,
 )
-from asperity.reference.materials import MATERIALS, Material
-from asperity.speeds import SpeedCourse
-from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.units import written
 
-_UNIT = re.compile(r"\d\.? ([^\"',\]]+)")  # in an example, as "25 mm" or ["0.2 m", "0.4 m"]
 _COLUMN = 32  # where comments of a commented case start, if the value leaves room
 
 
@@ -95,79 +89,6 @@ def entry_of(model: type[Section], dotted: str) -> CaseKey:
     remedy = f'Write it with its section, "{homes[0]}".' if homes else nearest(dotted, list(by_name))
     allowed = f'a key of a {model.keys["kind"].default} case, with its section, as "contact.spacing"'
     raise InputError(dotted, "an unknown key", allowed, remedy)
-
-
-def in_words(value: object, key: Key) -> str:
-    """Write a value of a key for people, in the unit of its default or its example: ``"300 MN/m"``."""
-    if holds_memory(value):
-        return described_value(value)
-    if isinstance(value, Path):
-        return value.name
-    return _spoken(value_in_toml(value, key, exactly=False))
-
-
-def _spoken(value: object) -> str:
-    """A value of a case file as people read it."""
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    if isinstance(value, dict):
-        return ", ".join(f"{name} {each}" for name, each in value.items() if name != "citation")
-    return ", ".join(map(_spoken, value)) if isinstance(value, list) else str(value)
-
-
-def in_toml(section: Section, in_memory: Callable[[str, Any], Any], title: str = "") -> dict[str, Any]:
-    """Keys that are not at their defaults as they would stand in a case file, to the last bit.
-
-    `in_memory` says what stands for the surface or table that a dotted key has instead of a file.
-    """
-    keys: dict[str, Any] = {}
-    for name, value in section.given().items():
-        if name in section.section_names:
-            keys[name] = in_toml(getattr(section, name), in_memory, f"{name}.")
-        elif holds_memory(value):
-            keys[name] = in_memory(f"{title}{name}", value)
-        else:
-            keys[name] = value_in_toml(value, section.keys[name])
-    return keys
-
-
-def value_in_toml(value: Any, key: Key, *, exactly: bool = True) -> Any:
-    """Write a value of a key as it would stand in a case file, to the last bit or shorter."""
-    if isinstance(value, tuple):
-        return [value_in_toml(item, key, exactly=exactly) for item in value]
-    if isinstance(value, Material):
-        return _material(value, exactly=exactly)
-    if isinstance(value, Path):
-        return str(value)
-    if not isinstance(value, float) or not isinstance(key.one, Quantity):
-        return value
-    unit = _UNIT.search(str(key.written_example))
-    how = key.one.dimension, unit[1] if unit else key.one.dimension
-    if isinstance(value, SpeedCourse):
-        return written_course(value, *how, exactly=exactly)
-    return written(value, *how, exactly=exactly)
-
-
-def refused(dotted: str, value: object) -> NoReturn:
-    """Refuse to write a case of something that stands in memory."""
-    remedy = 'Save it first, as np.save("map.npy", heights), and name the file in the case.'
-    if isinstance(value, HeightMap | Profile):
-        remedy += ' case.save("case.toml") does both of a map or a line whose points are equally far apart.'
-    raise InputError(dotted, described_value(value), "a file, where a case shall be written", remedy)
-
-
-def _material(value: Material, *, exactly: bool) -> str | dict[str, Any]:
-    """Write a material: the name of a known one, or its numbers."""
-    if MATERIALS.get(value.name) == value:
-        return value.name
-    named = {} if value.name == name_of_numbers(value.youngs_modulus) else {"name": value.name}
-    return {
-        **named,
-        "youngs_modulus": written(value.youngs_modulus, "Pa", "GPa", exactly=exactly),
-        "poisson_ratio": value.poisson_ratio,
-        "density": written(value.density, "kg/m^3", "kg/m^3", exactly=exactly),
-        **({} if value.citation == GIVEN else {"citation": value.citation}),
-    }
 
 
 def commented(
@@ -405,16 +326,14 @@ class AnyCase(Section):
         >>> case.save("saved/case.toml").name
         'case.toml'
         """
-        from asperity.case.beside import case_and_arrays
-
         allowed = 'the path of a case file, as "case.toml"'
         target = file_path("path", path, allowed)
         require(target.suffix.lower() == ".toml", "path", shown(str(target)), allowed)
-        arrays, text = case_and_arrays(self, target.stem)
+        arrays, keys = arrays_and_keys(self, target.stem)
         with files.together(target.parent, last=target.name) as new:
             for name, content in arrays.items():
                 files.write_bytes(new / name, content)
-            files.write_bytes(new / target.name, text.encode())
+            files.write_bytes(new / target.name, toml_text({"kind": self.kind, **keys}).encode())
         return target
 
     @property

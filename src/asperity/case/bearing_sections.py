@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from asperity.arguments import Array, require
-from asperity.case.form import Numbers, Section, name_of
+from asperity.case.form import Section
+from asperity.case.in_memory import Numbers, name_of
 from asperity.case.named_bearing import NamedBearing
 from asperity.case.table_headings import Column
 from asperity.case.tables import TableFile, TableSource, read_table

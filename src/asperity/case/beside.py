@@ -1,12 +1,13 @@
 """A case file with its measured maps and lines beside it, where these stand in memory."""
 
 import io
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 
-from asperity.case.any_case import AnyCase, in_toml, refused
-from asperity.case.toml import toml_text
+from asperity.case.form import Section, in_toml
+from asperity.case.in_memory import described_value
+from asperity.errors import InputError
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.units import written
 
@@ -14,8 +15,8 @@ OF_ARRAYS = {"file": ("pixel", "height_unit"), "line": ("line_spacing", "line_un
 """Keys that a section has for the distance of the points of a bare array, and its unit."""
 
 
-def case_and_arrays(case: AnyCase, stem: str) -> tuple[dict[str, bytes], str]:
-    """Files of the heights of each surface in memory, by name, and the text of a case that names them.
+def arrays_and_keys(case: Section, stem: str) -> tuple[dict[str, bytes], dict[str, Any]]:
+    """Files of the heights of each surface in memory, by name, and the keys of a case that name them.
 
     Their names begin with the stem of the case file. An `InputError` names what no array of heights holds:
     a table, say, or points of a map that are not as far apart along as across.
@@ -29,7 +30,7 @@ def case_and_arrays(case: AnyCase, stem: str) -> tuple[dict[str, bytes], str]:
         found[name := f"{stem}_{dotted.replace('.', '_')}.npy"] = stream.getvalue()
         return name
 
-    keys: dict[str, Any] = {"kind": case.kind, **in_toml(case, in_memory=put_beside)}
+    keys = in_toml(case, in_memory=put_beside)
     for dotted, spacing in spacings.items():
         *sections, name = dotted.split(".")
         section = keys
@@ -37,7 +38,7 @@ def case_and_arrays(case: AnyCase, stem: str) -> tuple[dict[str, bytes], str]:
             section = section[title]
         of_points, unit = OF_ARRAYS[name]
         section |= {of_points: written(spacing, "m", "um", exactly=True), unit: "m"}
-    return found, toml_text(keys)
+    return found, keys
 
 
 def _array_of(dotted: str, value: Any) -> tuple[np.ndarray, float]:
@@ -52,3 +53,11 @@ def _array_of(dotted: str, value: Any) -> tuple[np.ndarray, float]:
         refused(dotted, value)
     heights = [each.heights for each in surfaces]
     return np.stack(heights) if len(heights) > 1 else heights[0], spacings.pop()
+
+
+def refused(dotted: str, value: object) -> NoReturn:
+    """Refuse to write a case of something that stands in memory."""
+    remedy = 'Save it first, as np.save("map.npy", heights), and name the file in the case.'
+    if isinstance(value, HeightMap | Profile):
+        remedy += ' case.save("case.toml") does both of a map or a line whose points are equally far apart.'
+    raise InputError(dotted, described_value(value), "a file, where a case shall be written", remedy)

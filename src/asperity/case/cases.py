@@ -8,7 +8,8 @@ from typing import Any
 from asperity import extensions
 from asperity.arguments import FilePath, file_path, nearest, require, shown
 from asperity.case import PRESETS, kinds, scene, toml
-from asperity.case.any_case import AnyCase, commented, in_toml
+from asperity.case.any_case import AnyCase, commented
+from asperity.case.form import in_toml
 from asperity.errors import CaseError, InputError
 from asperity.files import packaged
 from asperity.laws import family_of, law_keys, spec_of

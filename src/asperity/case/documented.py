@@ -2,8 +2,8 @@
 
 import inspect
 import textwrap
-from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping
+from typing import Protocol
 
 from asperity.parameters import (
     Either,
@@ -17,14 +17,43 @@ from asperity.parameters import (
     ValueKind,
 )
 
-if TYPE_CHECKING:
-    from asperity.case.form import Section
-
 _WIDTH = 100
 _INDENT = "    "
 
 
-def signature_of(model: "type[Section]") -> inspect.Signature:
+class Declared(Protocol):
+    """What declares keys, and sections inside it: a section."""
+
+    @property
+    def keys(self) -> Mapping[str, Key]:
+        """Its keys by name."""
+        ...
+
+    def sections(self) -> "Mapping[str, DeclaredInside]":
+        """Sections inside it by name."""
+        ...
+
+
+class DeclaredInside(Protocol):
+    """A section inside another one, as that declares it."""
+
+    @property
+    def model(self) -> Declared:
+        """What it declares itself."""
+        ...
+
+    @property
+    def meaning(self) -> str:
+        """What it is there for."""
+        ...
+
+    @property
+    def repeated(self) -> bool:
+        """Whether it may come several times."""
+        ...
+
+
+def signature_of(model: Declared) -> inspect.Signature:
     """Signature of a section: its keys by name, defaults as a case file writes them, then its sections."""
     defaults = {name: key.default for name, key in model.keys.items() if name != "kind"}
     defaults |= {name: None for name in model.sections() if name.isidentifier()}
@@ -36,7 +65,7 @@ def signature_of(model: "type[Section]") -> inspect.Signature:
     )
 
 
-def documentation_of(model: "type[Section]", summary: str) -> str:
+def documentation_of(model: Declared, summary: str) -> str:
     """Docstring of a section: its summary, with all keys as parameters before the first heading of it."""
     text = inspect.cleandoc(summary)
     lines = text.splitlines()
@@ -46,7 +75,7 @@ def documentation_of(model: "type[Section]", summary: str) -> str:
     return "\n".join([*parts, "", *lines[heading:]]).strip("\n")
 
 
-def _listed(model: "type[Section]", shown: "dict[str, tuple[str, ...]]", title: str = "") -> Iterator[str]:
+def _listed(model: Declared, shown: "dict[str, tuple[str, ...]]", title: str = "") -> Iterator[str]:
     """Keys of a section with unit, default, meaning and limits; then the sections inside it with theirs."""
     names = shown.get(title, tuple(model.keys))
     for name, key in model.keys.items():

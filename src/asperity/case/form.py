@@ -1,6 +1,6 @@
 """A section of a case: keys with their defaults, read into a frozen object in SI, with all errors at once.
 
-And what values of a case say, whatever objects they are: to compare cases, to name results, to tell people.
+And what a section says: to compare cases, to name results, to write case files.
 """
 
 import hashlib
@@ -11,20 +11,18 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, replace
 from functools import cache
 from pathlib import Path
-from typing import Any, ClassVar, NamedTuple, NoReturn, Protocol, Self, runtime_checkable
-
-import numpy as np
+from typing import Any, ClassVar, NamedTuple, NoReturn, Self
 
 from asperity import __version__, extensions
 from asperity.arguments import nearest, shown
 from asperity.case import documented
+from asperity.case.in_memory import PLAIN, InMemory, described_value, digest, holds_memory
+from asperity.case.written_values import value_in_toml
 from asperity.errors import CaseError, InputError
 from asperity.parameters import FROM_PYTHON, Key, Origin, Problems, ValueKind, in_its_unit, outside
 from asperity.reference.materials import Material
 from asperity.speeds import SpeedCourse
 from asperity.store import content_key
-from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.units import written
 
 _NUMBER = re.compile(r"\[([2-9]|[1-9]\d{1,3})\]$")
 
@@ -307,8 +305,6 @@ class Section:
         return sorted({*self.keys, *self.section_names, *offered})
 
     def __repr__(self) -> str:
-        from asperity.case.any_case import in_toml
-
         keys = in_toml(self, in_memory=lambda _, value: f"<{described_value(value)}>")
         return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in keys.items())})"
 
@@ -366,22 +362,23 @@ def _shown(value: object, kind: ValueKind) -> str:
     return in_its_unit(str(value) if isinstance(value, Path) else value, kind)
 
 
-# --- what values say
+# --- what sections say
 
 
-@runtime_checkable
-class Numbers(Protocol):
-    """Any other object that stands for a file: a structure by its modes, for instance."""
+def in_toml(section: Section, in_memory: Callable[[str, Any], Any], title: str = "") -> dict[str, Any]:
+    """Keys that are not at their defaults as they would stand in a case file, to the last bit.
 
-    def numbers(self) -> dict[str, Any]:
-        """All arrays that it is made of, by name."""
-        ...
-
-
-_PLAIN = (str, float, int, type(None))
-"""What a value mostly is: asked first, as it takes long to see that something is no `Numbers`."""
-InMemory = HeightMap | Profile | np.ndarray | Numbers
-"""What Python may hand over where a case file names a file."""
+    `in_memory` says what stands for the surface or table that a dotted key has instead of a file.
+    """
+    keys: dict[str, Any] = {}
+    for name, value in section.given().items():
+        if name in section.section_names:
+            keys[name] = in_toml(getattr(section, name), in_memory, f"{name}.")
+        elif holds_memory(value):
+            keys[name] = in_memory(f"{title}{name}", value)
+        else:
+            keys[name] = value_in_toml(value, section.keys[name])
+    return keys
 
 
 def content(value: Any, of_file: Callable[[Path], str] = str) -> Any:
@@ -389,7 +386,7 @@ def content(value: Any, of_file: Callable[[Path], str] = str) -> Any:
 
     `of_file` says what stands for a file: its path, or a digest of what it holds.
     """
-    if isinstance(value, _PLAIN):
+    if isinstance(value, PLAIN):
         return value.points if isinstance(value, SpeedCourse) else value
     if isinstance(value, Section):
         return {name: content(getattr(value, name), of_file) for name in (*value.keys, *value.section_names)}
@@ -402,20 +399,6 @@ def content(value: Any, of_file: Callable[[Path], str] = str) -> Any:
     if isinstance(value, Path):
         return of_file(value)
     return digest(value) if isinstance(value, InMemory) else value
-
-
-def digest(value: InMemory) -> str:
-    """SHA-256 over shape, spacing and numbers."""
-    if isinstance(value, Numbers):
-        held = [[name, digest(np.asarray(each))] for name, each in value.numbers().items()]
-        return hashlib.sha256(json.dumps(held).encode()).hexdigest()
-    numbers = np.ascontiguousarray(value if isinstance(value, np.ndarray) else value.heights)
-    spacing: Any = None if isinstance(value, np.ndarray) else value.spacing
-    if isinstance(value, Profile) and value.start is not None:
-        spacing = spacing, value.start
-    found = hashlib.sha256(f"{numbers.dtype.str} {numbers.shape} {spacing}".encode())
-    found.update(numbers.data)
-    return found.hexdigest()
 
 
 def file_digest(path: Path) -> str:
@@ -433,39 +416,3 @@ def case_key(
     """
     told = json.dumps(content(case, of_file), sort_keys=True)
     return content_key(name, version, __version__, told, *more, *extensions.stamp())
-
-
-def holds_memory(value: Any) -> bool:
-    """Whether there is something in a value that no case file can hold."""
-    if isinstance(value, _PLAIN):
-        return False
-    if isinstance(value, Mapping):
-        return any(map(holds_memory, value.values()))
-    return any(map(holds_memory, value)) if isinstance(value, list | tuple) else isinstance(value, InMemory)
-
-
-def name_of(value: Path | InMemory | tuple[InMemory, ...]) -> str:
-    """Name of what was measured, for messages and records."""
-    if isinstance(value, Path):
-        return value.name
-    if isinstance(value, tuple):
-        return ", ".join(dict.fromkeys(map(name_of, value)))
-    return getattr(value, "source", "") or described_value(value).partition(", ")[0]
-
-
-def described_value(value: object) -> str:
-    """Say what stands in memory: what it is, how large, and the start of its digest."""
-    if isinstance(value, list | tuple):
-        return "; ".join(map(described_value, value))
-    if isinstance(value, np.ndarray):
-        what = f"table of {' × '.join(map(str, value.shape))} numbers"
-    elif isinstance(value, HeightMap):
-        dx, dy = (written(each, "m", "um") for each in value.spacing)
-        what = f"height map of {value.shape[0]} × {value.shape[1]} points, {dx} × {dy} apart"
-    elif isinstance(value, Profile):
-        what = f"profile of {value.shape[0]} points, {written(value.spacing, 'm', 'um')} apart"
-    elif isinstance(value, Numbers):
-        what = f"{type(value).__name__} of {sum(map(np.size, value.numbers().values()))} numbers"
-    else:
-        return str(value)
-    return f"{what}, in memory, sha256 {digest(value)[:16]}"

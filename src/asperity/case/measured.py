@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from asperity.arguments import Array, NDArray
-from asperity.case.form import name_of
+from asperity.case.in_memory import name_of
 from asperity.case.table_headings import Column
 from asperity.case.tables import TableSource, read_table, refuse_disorder, tells
 from asperity.errors import InputError

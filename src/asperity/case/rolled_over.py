@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 from asperity.arguments import Array, given_options
 from asperity.case import tables
 from asperity.case.body import INERTIA, PROFILE
-from asperity.case.form import Numbers, Section, name_of
+from asperity.case.form import Section
+from asperity.case.in_memory import Numbers, name_of
 from asperity.case.measured import read_decay_rates, read_mobility
 from asperity.case.ready_lists import OVER_TRACKS, NamedChanges, listed_changes
 from asperity.case.surface import INDEX, of_file

@@ -9,7 +9,8 @@ import numpy as np
 
 from asperity.arguments import FORMS, Array, FilePath, real_array, require, shown
 from asperity.case import tables, toml
-from asperity.case.form import Section, holds_memory
+from asperity.case.form import Section
+from asperity.case.in_memory import holds_memory
 from asperity.errors import InputError
 from asperity.parameters import (
     ANGLE,

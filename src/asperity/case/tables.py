@@ -13,7 +13,7 @@ from typing import Any, NoReturn
 import numpy as np
 
 from asperity.arguments import Array, Complex, Flags, listed
-from asperity.case.form import name_of
+from asperity.case.in_memory import name_of
 from asperity.case.table_headings import (
     MOST_HEADING,
     Column,

@@ -12,7 +12,7 @@ import numpy as np
 
 from asperity import text_files
 from asperity.arguments import FilePath
-from asperity.case.form import described_value
+from asperity.case.in_memory import described_value
 from asperity.errors import InputError
 from asperity.written_numbers import with_article
 

@@ -9,9 +9,9 @@ import numpy as np
 
 from asperity import __version__, files
 from asperity.arguments import Array
-from asperity.case.any_case import AnyCase, entries, in_toml
+from asperity.case.any_case import AnyCase, entries
 from asperity.case.cases import read_case
-from asperity.case.form import content, file_digest
+from asperity.case.form import content, file_digest, in_toml
 from asperity.case.toml import toml_text
 from asperity.cli.commands import mark_of, refuse_other_case, require_writable, taken_file
 from asperity.cli.running import doubted

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from asperity import files
-from asperity.case import any_case, toml
+from asperity.case import toml
 from asperity.case.any_case import function_named
-from asperity.case.form import content, file_digest
+from asperity.case.form import content, file_digest, in_toml
 from asperity.cli.commands import mark_of, refuse_other_case, require_writable
 from asperity.cli.running import warn, warnings_of
 from asperity.optimising.definition import load_aim
@@ -66,7 +66,7 @@ def run_optimisation(
         told: ToldOptimisation = function_named(optimisation_of(case).told_by)(found)
         with files.together(directory, last=FILES["case"]) as new:
             _written(found, told, new, report=report)
-            keys = any_case.in_toml(found.case, in_memory=lambda *_: FILES["texture"])
+            keys = in_toml(found.case, in_memory=lambda *_: FILES["texture"])
             text = toml.toml_text({"kind": found.case.kind, **keys})
             files.write_bytes(new / FILES["case"], f"{mark_of('texture', asked, text)}{text}".encode())
             written = {what: path for what, path in written.items() if (new / FILES[what]).exists()}

@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from asperity.arguments import Array, require, shown
-from asperity.case.any_case import AnyCase, CaseKey, entry_of, in_words
+from asperity.case.any_case import AnyCase, CaseKey, entry_of
 from asperity.case.tables import TableFile, read_levels
+from asperity.case.written_values import in_words
 from asperity.errors import InputError
 from asperity.parameters import FROM_PYTHON, Bounded, Either, Key, Quantity, outside
 from asperity.scenarios.records import spectrum_levels

@@ -9,7 +9,8 @@ import numpy as np
 
 from asperity.arguments import Array, Flags, NDArray
 from asperity.case.any_case import AnyCase
-from asperity.case.form import content, digest
+from asperity.case.form import content
+from asperity.case.in_memory import digest
 from asperity.errors import ComputationError, InputError, PhysicsWarning
 from asperity.fitting.free import Free, spectrum_of
 from asperity.fitting.search import (

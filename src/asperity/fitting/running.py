@@ -10,8 +10,9 @@ import numpy as np
 
 from asperity.arguments import Array, FilePath, NDArray, file_path, require, shown, whole
 from asperity.case import cases
-from asperity.case.any_case import AnyCase, entry_of, in_words
+from asperity.case.any_case import AnyCase, entry_of
 from asperity.case.form import case_key
+from asperity.case.written_values import in_words
 from asperity.errors import BandsWarning, InputError
 from asperity.fitting import determined
 from asperity.fitting.fitted import Estimate, Fitted, Undetermined

@@ -9,7 +9,7 @@ from xarray import DataTree
 from asperity.arguments import Array
 from asperity.case.any_case import AnyCase
 from asperity.case.ball_bearing import BearingUnderLoad
-from asperity.case.form import name_of
+from asperity.case.in_memory import name_of
 from asperity.case.table_headings import Column
 from asperity.case.tables import TableSource, read_table
 from asperity.diagnostics import ISO_BANDS

@@ -3,7 +3,7 @@
 import numpy as np
 
 from asperity.case.any_case import AnyCase
-from asperity.case.form import name_of
+from asperity.case.in_memory import name_of
 from asperity.case.measured import read_rails
 from asperity.case.rolled_over import TrackKeys
 from asperity.case.scene import Case

@@ -8,7 +8,7 @@ from xarray import DataTree
 
 from asperity.arguments import Array
 from asperity.case.any_case import AnyCase
-from asperity.case.form import name_of
+from asperity.case.in_memory import name_of
 from asperity.case.measured import band_numbers, read_band_levels
 from asperity.case.scene import Case
 from asperity.case.table_headings import Column

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from asperity.case.any_case import AnyCase
-from asperity.case.form import name_of
+from asperity.case.in_memory import name_of
 from asperity.case.measured import FORMS, in_some_unit, read_mobility
 from asperity.case.table_headings import Column
 from asperity.case.tables import TableSource, refuse_disorder

@@ -9,7 +9,7 @@ import numpy as np
 from xarray import DataTree
 
 from asperity.arguments import Array, NDArray, as_row, require, shown
-from asperity.case.form import name_of
+from asperity.case.in_memory import name_of
 from asperity.case.table_headings import Column
 from asperity.case.tables import TableSource, read_table
 

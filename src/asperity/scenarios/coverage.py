@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from asperity.arguments import Array
-from asperity.case.form import name_of
+from asperity.case.in_memory import name_of
 from asperity.case.scene import Case
 from asperity.case.tables import MEASURED_WAVE, columns_of_levels
 from asperity.errors import InputError, OutOfRangeWarning

@@ -9,7 +9,7 @@ from typing import cast
 import numpy as np
 
 from asperity.arguments import Array, require
-from asperity.case import body, form
+from asperity.case import body, in_memory
 from asperity.case.across import complete
 from asperity.case.surface import MAP_KEYS, MeasuredLine, Surface, read_recipe
 from asperity.case.tables import TableSource, read_levels
@@ -126,7 +126,7 @@ def _in_words(wavelength: Array, level_db: float, grid: Grid, name: str) -> str:
 def spectrum_levels(spectrum: str | TableSource) -> tuple[Array, Array, str]:
     """Band levels of a texture, by name or from a table: wavelengths, m, levels, dB re 1 µm, and a name."""
     if not isinstance(spectrum, str):
-        return *read_levels(spectrum), form.name_of(spectrum)
+        return *read_levels(spectrum), in_memory.name_of(spectrum)
     if spectrum in cnossos.WHEEL_ROUGHNESS:
         return *cnossos.wheel_roughness(spectrum), spectrum
     return *cnossos.rail_roughness(spectrum), spectrum
@@ -239,7 +239,7 @@ def single_line(surface: Surface, grid: Grid, lead: int, least: int, *, may_shor
     laid, how = behind_run_in(line, rows + lead, lead, surface.continuation, min(least, line.size) // 2)
     margin = 1e3 * spacing * ((least - 2) // 2)
     where = "" if continued else f", from {margin:.4g} mm before the record on"
-    origin = f"measured, {form.name_of(surface.line)}{where}{how}"  # type: ignore[arg-type]
+    origin = f"measured, {in_memory.name_of(surface.line)}{where}{how}"  # type: ignore[arg-type]
     return Record(Rows(laid[:, None]), origin)
 
 
@@ -335,7 +335,7 @@ def processed(section: MeasuredLine, name: str, *, degree: int) -> tuple[list[Pr
     raw = (measured,) if isinstance(measured, Profile) else measured_lines.lines_of(measured)
     done, how = measured_lines.process(raw, section.processing)
     count = f"{len(raw)} line{'s' if len(raw) > 1 else ''} measured"
-    words = f"{form.name_of(section.line)}, {count}, {how}"  # type: ignore[arg-type]
+    words = f"{in_memory.name_of(section.line)}, {count}, {how}"  # type: ignore[arg-type]
     return [level(line, degree) for line in done], words
 
 

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 
 from asperity.arguments import Array
-from asperity.case.form import name_of
+from asperity.case.in_memory import name_of
 from asperity.case.rolling_case import SETTLED
 from asperity.case.scene import Case
 from asperity.case.sections import ContactKeys

@@ -10,8 +10,10 @@ import numpy as np
 from xarray import Variable
 
 from asperity.arguments import require, shown
-from asperity.case.any_case import AnyCase, CaseKey, entry_of, value_in_toml
-from asperity.case.form import Section, content, described_value, holds_memory
+from asperity.case.any_case import AnyCase, CaseKey, entry_of
+from asperity.case.form import Section, content
+from asperity.case.in_memory import described_value, holds_memory
+from asperity.case.written_values import value_in_toml
 from asperity.errors import CaseError, InputError
 from asperity.parameters import Origin, Text, key, keys_of
 from asperity.reference.materials import Material

@@ -12,7 +12,7 @@ import xarray
 
 from asperity import __version__
 from asperity.arguments import NDArray, nearest, shown
-from asperity.case.form import described_value
+from asperity.case.in_memory import described_value
 from asperity.errors import CoarseSamplingWarning, Grade, InputError
 from asperity.reporting.data import typed_unit, typed_values
 from asperity.results import variable
