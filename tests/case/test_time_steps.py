@@ -99,3 +99,18 @@ def test_the_default_step_of_a_bearing_has_four_to_a_period_of_the_highest_lobe(
     bending = math.sqrt(bearing.material.youngs_modulus / bearing.material.density / 12.0) * 3e-3 / radius**2
     highest = n * (n**2 - 1) / math.sqrt(n**2 + 1) * bending / (2.0 * math.pi)
     assert 0.5 < 4.0 * highest * case.step <= 1.0
+
+
+def test_a_step_that_is_chosen_is_found_anew_on_another_grid():
+    case = as_case(BALL | {"contact": {}})
+    before = case.time_step
+    finer = case.with_chosen(contact=case.contact.with_chosen(spacing=0.3 * case.contact.spacing))
+    assert finer.time_step != before
+    cells = finer.time_step * finer.speed / finer.contact.spacing
+    assert max(cells, 1.0 / cells) == pytest.approx(round(max(cells, 1.0 / cells)), rel=1e-9)
+
+
+def test_contacts_are_told_from_the_foremost_on():
+    body = BOGIE | {"positions": ["0 m", "4 m", "9 m"]}
+    uneven = as_case(ON_RAIL | {"kind": "bodies", "over": "track", "speed": "50 m/s", "body": body})
+    assert uneven.contacts_behind == pytest.approx((0.0, 2.5, 5.0, 7.5, 9.0, 11.5))

@@ -32,6 +32,9 @@ def test_help_names_the_unit_that_a_number_is_in():
     assert "speed : m/s, default '56 m/s'\n    Rolling speed (a speed greater than 0, or a course" in told
     assert "    pad_stiffness : N/m, optional\n        Stiffness of a rail pad" in told
     assert "laws : list of text, default ['areal', 'linear-filtered']" in told
+    assert "track : section of keys, as a mapping\n" in told
+    of_bearing = inspect.getdoc(case_class("ball-bearing"))
+    assert "fault : section of keys, as a mapping, or a list of them\n" in of_bearing
 
 
 def test_the_signature_is_that_of_the_keys():
@@ -57,9 +60,10 @@ def test_dir_lists_keys_and_what_people_do_with_them():
 
 def test_a_notebook_shows_what_is_set():
     own = {"name": "<b>", "youngs_modulus": 2e11, "poisson_ratio": 0.3, "density": 7800}
-    page = WHEEL.with_(wheel={"material": own})._repr_html_()
+    page = WHEEL.with_(wheel={"material": own | {"citation": "a book"}})._repr_html_()
     assert "<td>track.pad_stiffness</td><td>150 MN/m</td><td>stiffness of a rail pad</td>" in page
     assert "&lt;b&gt;" in page
+    assert "a book" not in page  # the report cites it
     assert "<td>wheel.mass</td>" not in page  # it is at its default
     assert repr(WHEEL) == (
         "WheelOnRail(surface={'spectrum': 'iso3095'}, track={'pad_stiffness': '150 MN/m'})"
