@@ -362,6 +362,20 @@ def test_a_search_where_runs_jump_begins_within_a_factor_of_ten(ball_bearing, ra
     ) == pytest.approx(0.4)
 
 
+def test_loads_are_looked_at_within_a_factor_of_ten(ball_bearing, ran):
+    """Where the load is the only key, no other is run at all."""
+    calls = ran(jumping_lines)
+    case = ball_bearing.with_(envelope_band=(2e3, 6e3))
+    at = np.array([50.0, 100.0, 200.0, 300.0])
+    values = jumping_lines(case.with_(axial=400.0))[bearing.ENVELOPE][0][at.astype(int) - 1]
+    asperity.fit(case, Measured("envelope line", at, values))
+    loads = np.array([each.axial for each in calls])
+    assert loads.min() >= 15.0
+    assert loads.max() <= 2600.0
+    assert loads.min() < 40.0
+    assert loads.max() > 1200.0
+
+
 def test_a_search_where_runs_jump_begins_at_two_places(ball_bearing, ran):
     """At the case and at the best of six loads that are spread about it."""
     told = []

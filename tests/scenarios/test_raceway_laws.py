@@ -119,14 +119,26 @@ def test_heights_are_pressed_as_means_across_the_end_of_a_turn():
     assert np.std(found - turns[n - 3 : 2 * n + 3]) > 1e-3 * np.std(heights)
 
 
-@pytest.mark.parametrize(("rms", "rows"), [(30 * NM, 4), (80 * NM, 3)])
-def test_positions_on_smooth_raceways_have_the_levels_of_every_row(rms, rows):
+def test_positions_on_smooth_raceways_have_the_levels_of_every_row():
+    surface = rough(30 * NM, radius=0.6 * MM / 2 / np.pi)
+    every, on = (OnRaceway(CONTACT, surface, LOAD, shortest=wave) for wave in (0.0, 1.0))
+    assert every.scanned_stride == 1
+    assert on.scanned_stride == 3
+    places = np.arange(len(surface.heights)) * surface.spacing[0]
+    found, exact = (np.fft.rfft(force(each.build("table"), places, APPROACH)) for each in (on, every))
+    waves = surface.circumference / np.arange(1, 7)
+    off = 20.0 * np.log10(np.abs(found / exact)[1:7])
+    assert np.abs(off[waves > 1.6 * ALONG]).max() < 0.1
+
+
+@pytest.mark.parametrize("rms", [30 * NM, 80 * NM])
+def test_positions_on_long_smooth_raceways_have_the_bands_of_every_row(rms):
     """On waves of 1.6 half axes and more."""
     texture = AroundTexture(roughness=rms, longest=0.3 * MM, shortest=0.06 * MM)
     surface = raceway_on(CONTACT, LOAD, 2.5 * MM, texture, seed=4)
     wave = 1.6 * ALONG
     every, on = (OnRaceway(CONTACT, surface, LOAD, shortest=each) for each in (0.0, wave))
-    assert (every.scanned_stride, on.scanned_stride) == (1, rows)
+    assert (every.scanned_stride, on.scanned_stride) == (1, 3)
     assert on.roughness == pytest.approx(rms / APPROACH, rel=0.1)
     places = np.arange(len(surface.heights)) * surface.spacing[0]
     states = on.states_under(0.9 * LOAD, LOAD)

@@ -51,12 +51,13 @@ REMEDIES = "accuracy", "A smaller time step, or a larger static load: windows ho
 """For contacts solved in every step on raceways."""
 SAMPLES = 8
 """Places of a rough raceway whose mean is its force curve."""
-ON_SMOOTH = {0.025: (1.6, 2.7), SMOOTH: (2.5, 3.0)}
-"""Positions in a half axis, and in the shortest wave that is looked at, at most, by `roughness` up to which.
+OF_SMOOTH = 2.5
+"""Positions in a half axis, at most, on what is smooth.
 
-Planes hold what is of first order at every row: positions are for the second order alone, which is the less
-beside it the smoother all is.
+Planes hold what is of first order at every row: positions are for the second order alone.
 """
+OF_SMOOTH_WAVE = 3
+"""Positions in the shortest wave that is looked at there."""
 FILTER_STRIPS = 4
 """Pieces of a rough raceway on which contact filters are found."""
 FILTER_LENGTH = 60.0
@@ -131,13 +132,14 @@ class OnRaceway:
     def scanned_stride(self) -> int:
         """Rows between positions of the scan, whole strides: those of a path, see `table_stride`.
 
-        On waves from 1.6 half axes on those of `ON_SMOOTH` have the levels of a position in every row within
-        0.1 dB.
+        Those on what is smooth have the levels of a position in every row within 0.1 dB, on waves from
+        1.6 half axes on.
         """
         if self.surface.damaged.any():
             return self.stride
-        for_roughness = (ON_SMOOTH[most] for most in ON_SMOOTH if self.roughness <= most)
-        in_patch, in_wave = next(for_roughness, (OF_TEXTURE, OF_WAVE))
+        smooth = self.roughness <= SMOOTH
+        in_patch = OF_SMOOTH if smooth else OF_TEXTURE
+        in_wave = OF_SMOOTH_WAVE if smooth else OF_WAVE
         apart = min(self.axes[0] / in_patch, self.shortest / in_wave) / self.surface.spacing[0]
         times = max(1, math.floor(apart / self.stride * (1.0 + 1e-3)))
         count = len(self.positions)
