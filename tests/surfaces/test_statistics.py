@@ -93,6 +93,8 @@ def test_lines_have_parameters_of_their_sections():
     assert (named[0].bandwidth, own[0].bandwidth) == ((2 * UM, 4000 * UM), (8 * UM, UM))
     assert_allclose([found["Rz"], found["Rp"], found["Rt"]], [6 * UM, 3 * UM, 10 * UM], rtol=1e-3)
     assert named[5].meaning.endswith("mean of 5 sections of 0.8 mm")
+    along_a_track = profile_statistics(Profile(line.heights, 1e-3 * 2.5))
+    assert along_a_track[5].meaning.endswith("mean of 5 sections of 2 m")
     assert longer["Rz"] == pytest.approx(6e-6, rel=1e-3)  # 2 and 4 µm, of two whole sections
     assert longer["Rq"] == pytest.approx(1e-6 * np.sqrt(11.0 / 2.0), rel=1e-6)
 

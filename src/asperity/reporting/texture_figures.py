@@ -92,11 +92,6 @@ def height_histogram(
 ) -> Panel:
     """How often each height occurs, of one or two surfaces, with the normal distribution of the first."""
     size, symbol = unit
-    steps = []
-    for (name, (edges, density)), look in zip(named.items(), LOOKS, strict=False):
-        often = np.repeat(density * size, 2)
-        at = np.repeat(edges / size, 2)[1:-1]
-        steps.append(Line(at, np.where(often > 0, often, np.nan), name, *look, width=1.4))
     edges, density = next(iter(named.values()))
     middle = (edges[1:] + edges[:-1]) / 2
     share = density * np.diff(edges)
@@ -106,10 +101,17 @@ def height_histogram(
     normal = np.exp(-((z - mean) ** 2) / (2 * spread**2)) / (spread * np.sqrt(2 * np.pi))
     top = float(normal.max() * size)
     normal[normal < 1e-8 * normal.max()] = np.nan  # far out it is zero, which no axis in decades holds
-    highest = max(float(np.nanmax(each.y)) for each in steps)  # of rounded heights few bins hold all
+    bottom = 1e-4 * top
+    steps = []
+    for (name, (edges, density)), look in zip(named.items(), LOOKS, strict=False):
+        often = np.repeat(density * size, 2)
+        at = np.repeat(edges / size, 2)[1:-1]
+        # a bin without heights reaches the foot of the panel: an axis in decades has no zero
+        steps.append(Line(at, np.where(often > 0, often, bottom), name, *look, width=1.4))
+    highest = max(float(each.y.max()) for each in steps)  # of rounded heights few bins hold all
     return Panel(
         Axis(f"height / {symbol} (out of the material →)"),
-        Axis(f"probability density / (1/{symbol})", 1e-4 * top, max(4.0 * top, 1.2 * highest), log=True),
+        Axis(f"probability density / (1/{symbol})", bottom, max(4.0 * top, 1.2 * highest), log=True),
         (*steps, Line(z / size, normal * size, "normal", *NORMAL, width=0.9)),
         **place,
     )

@@ -16,6 +16,7 @@ from asperity.surfaces import cleaning, levelling, spectra, synthesis
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import PIECE
 from asperity.surfaces.strip import Strip
+from asperity.written_numbers import rounded
 
 SEVEN_POINTS = ((3, 1.0), (2, -9.0), (1, 45.0))
 """Distances, points, and sixty times the weights of differences of heights in the slope between them."""
@@ -116,7 +117,9 @@ def profile_statistics(
     peak = float(peaks[whole].mean())
     valley = float(-valleys[whole].mean())
     values |= {"t": values.pop("z"), "z": peak + valley, "p": peak, "v": valley, "dq": _rms_slope_of(profile)}
-    means = f", mean of {whole.sum()} sections of {1e3 * points * profile.spacing:.4g} mm"
+    length = points * profile.spacing
+    written = f"{rounded(length, 4)} m" if length >= 1.0 else f"{rounded(1e3 * length, 4)} mm"
+    means = f", mean of {whole.sum()} sections of {written}"
     band = bandwidth or (2.0 * profile.spacing, profile.size)
     return _statistics("R", values | stratified(profile.heights, mean), band, means)
 
