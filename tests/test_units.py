@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from asperity.errors import InputError
 from asperity.unit_table import BASE, UNITS, scale_of
-from asperity.units import factor, quantity
+from asperity.units import factor, quantity, written
 
 READ = [
     (0.025, "m", ["25 mm", "25mm"]),
@@ -51,6 +51,18 @@ def test_quantities(text, dimension, value):
 def test_every_number_keeps_its_value(number, unit, gap):
     name, si = unit
     assert quantity(f"{number!r}{gap}{name}", "m") == pytest.approx(number * si, rel=1e-14)
+
+
+@pytest.mark.parametrize("text", ["143 km/h", "85.7 km/h", "200 km/h", "56 m/s", "0.37 m/s", "39.72 m/s"])
+def test_a_speed_is_written_as_it_was_typed(text):
+    """To the last bit, and short."""
+    for exactly in (True, False):
+        assert written(quantity(text, "m/s"), "m/s", "m/s", exactly=exactly) == text
+
+
+def test_a_speed_that_nobody_typed_is_written_in_its_own_unit():
+    assert written(100.0 / 3.0 + 1e-9, "m/s", "m/s") == "33.3333 m/s"
+    assert written(math.nan, "m/s", "m/s") == "nan m/s"
 
 
 DIMENSIONS = ("", "m", "Hz", "N", "N/m", "m/N", "dB", "dB/m", "kg", "rad", "s", "Pa s/m^2", "N s/m", "kg/m^3")

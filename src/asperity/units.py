@@ -48,6 +48,8 @@ _LONGEST_QUANTITY = 200  # characters: a number to the last bit and its unit hav
 _PREFIXED = ("m", "s", "Hz", "N", "Pa", "m/s", "N/m", "N s/m", "N m^2")
 LEAST_NUMBER, MOST_NUMBER = 1e-3, 1e5
 """A quantity keeps its unit while its number lies between these."""
+_TYPED = {"m/s": ("km/h",)}
+"""Units without a prefix in which people type a quantity."""
 _PREFIXES = {"n": 1e-9, "u": 1e-6, "µ": 1e-6, "m": 1e-3, "k": 1e3, "M": 1e6, "G": 1e9}
 _TURNS = ("1/min", "rpm", "r/min", "min^-1", "min⁻¹")
 """Turns, where Hz are meant."""
@@ -176,20 +178,25 @@ def written(value: float, dimension: str, unit: str, *, exactly: bool = False) -
     """Write a quantity in SI with its unit, as `quantity` reads it: ``"25 mm"``; infinity is ``"inf"``.
 
     `dimension` is the SI unit, `unit` the preferred one; another prefix is taken where its number would be
-    far from one. `exactly` says that the text has to be read as the very same number; it has six digits
-    otherwise.
+    far from one, or whose number is that which was typed: ``"143 km/h"``. `exactly` says that the text has to
+    be read as the very same number; it has six digits otherwise.
     """
     if math.isinf(value):
         return "inf" if value > 0 else "-inf"
+    if math.isnan(value):
+        return f"nan {unit}"
     unit = _suited(value, dimension, unit)
     sign = "+" if dimension == "dB" else ""
     # what was written as 50 nm is not 0.05 um to the last bit
-    units = [unit, *(_prefixed(value, dimension) if dimension in _PREFIXED else ()), dimension]
-    forms = [(form, each) for form in ("g", ".12g", ".15g") for each in units]
-    for form, each in [*forms, ("", unit), ("", dimension)]:
+    units = [unit, *(_prefixed(value, dimension) if dimension in _PREFIXED else ())]
+    units += [*_TYPED.get(dimension, ()), dimension]
+    longer = [*((form, each) for form in (".12g", ".15g") for each in units), ("", unit), ("", dimension)]
+    for form, each in [*(("g", each) for each in units), *(longer if exactly else ())]:
         text = f"{value / factor(each, dimension):{sign}{form}} {each}"
-        if not exactly or quantity(text, dimension) == value:
+        if quantity(text, dimension) == value:
             return text
+    if not exactly:
+        return f"{value / factor(unit, dimension):{sign}g} {unit}"
     raise AssertionError(f"{value!r} {dimension} cannot be written")  # the last form has every bit
 
 

@@ -5,6 +5,7 @@ import pytest
 
 from asperity import BallOnBeam, BearingUnderLoad, Bodies, read_case
 from asperity.case.form import content
+from asperity.case.speed import Speed, span_of
 from asperity.errors import CaseError, InputError
 from asperity.scenarios.prepared_bearing import expected, prepare_bearing
 from asperity.serving.case_form import case_data
@@ -19,6 +20,24 @@ AT = ", at the fastest, 1800 1/min"
 
 def turning(speed, **keys):
     return BearingUnderLoad(speed=speed, **BEARING | keys)
+
+
+@pytest.mark.parametrize(
+    ("typed", "meant", "told"),
+    [
+        ("143 km/h", "m/s", "143 km/h"),
+        ("33.33333333 m/s", "m/s", "33.333 m/s"),
+        ("80..96 km/h in 3 s", "m/s", "80 to 96 km/h"),
+        ("80 km/h at 0 s, 3 m/s at 4 s", "m/s", "80 km/h to 3 m/s"),
+        ("1423 1/min", "1/min", "1423 1/min"),
+        ("23.7166 Hz", "1/min", "23.7166 Hz"),
+        ("10 Hz at 0 s, 1800 1/min at 0.5 s", "1/min", "600 to 1800 1/min"),
+    ],
+)
+def test_a_speed_is_told_as_it_was_typed(typed, meant, told):
+    """With five digits if it is longer; of a course its ends, with one unit if they share it."""
+    dimension = "Hz" if meant == "1/min" else "m/s"
+    assert span_of(Speed(dimension)(typed), dimension, meant) == told
 
 
 @pytest.mark.parametrize(

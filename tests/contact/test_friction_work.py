@@ -159,6 +159,21 @@ def test_unlike_bodies_that_roll_freely_make_heat_without_a_force():
         assert state.work * dx == pytest.approx(in_cells(solver, state, past, slip), rel=1e-6)
 
 
+@pytest.mark.parametrize(("creepage", "spin"), [((1e-4, 0.0), 0.0), ((8e-3, 0.0), 0.0), ((2e-4, 5e-4), -0.3)])
+def test_what_rolls_of_unlike_bodies_is_driven_by_the_moment_of_its_pressure_as_well(creepage, spin):
+    """−V (F·ξ + M φ) + V ∫ p x dA/R: pressure that leans ahead resists rolling."""
+    contact, solver, *_ = ellipse(0.8, 0.1, (60, 50), 0.3, scale=1.2, bodies=(SOFT, HARD))
+    found = solver.roll(contact, creepage, spin, speed=17.0)
+    space, pressed = solver.half_space, found.normal.pressure
+    x = places(60, space.spacing[0])[:, None]
+    radius = 0.5 * x[0] ** 2 / (contact.undeformed_gap[0] - contact.undeformed_gap[30]).mean()
+    leans = float((pressed * x).sum()) * space.cell_area / float(radius[0])
+    driven = -(found.force[0] * creepage[0] + found.force[1] * creepage[1] + found.moment * spin)
+    scale = 17.0 * (abs(driven) + abs(leans))
+    assert abs(leans) > 0.05 * abs(driven)
+    assert found.dissipated_power == pytest.approx(17.0 * (driven + leans), abs=0.01 * scale)
+
+
 def moved(solver, state, ahead=0.0):
     """Displacement by traction and pressure (2, nx, ny), m, summed over cells."""
     nx, ny = solver.half_space.shape

@@ -185,6 +185,7 @@ def test_differences_are_drawn_over_the_filtered_linear_contact_first(tree):
     columns = part.drawn(tree).columns
     own = [name for name in columns if name.startswith("areal minus l")]
     assert own == ["areal minus linear-filtered [dB]", "areal minus linear [dB]"]
+    assert {"linear minus linear-filtered [dB]"} < {*columns} - {"linear minus linear [dB]"} == {*columns}
     for law in ("linear-filtered", "linear"):
         expected = spectra["force_level"].sel(law="areal") - spectra["force_level"].sel(law=law)
         np.testing.assert_allclose(columns[f"areal minus {law} [dB]"], expected)

@@ -2,6 +2,7 @@
 
 import json
 import tomllib
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from asperity.scenarios import run_time
 from asperity.scenarios.prepared_bearing import expected, prepare_bearing, raceways_of
 from asperity.scenarios.raceway_grids import raceway_on
 from asperity.scenarios.roller_raceways import OnRollerRaceway, on_surface
+from asperity.scenes.bearing_validity import out_of_place
 from asperity.scenes.computed_bearing import compute_bearing
 from asperity.scenes.figures.bearing import _faults, along_roller, ball_contacts_table, films_table, load_zone
 from asperity.serving.contact_preview import PressedSample
@@ -256,7 +258,7 @@ def test_what_lies_along_the_heaviest_roller_is_told_in_words_of_rollers(tree):
     assert "tilt" not in str(along_roller.drawn(tree))
     tilted = tree.copy()
     tilted["bearing"].attrs |= {"ring_tilt": -2.74e-3, "tilt_moment": 5.483}
-    told = "the pressure there is higher. The inner ring is held at a tilt of -2.74 mrad by 5.483 N m."
+    told = "the pressure there is higher. The inner ring is held at a tilt of −2.74 mrad by 5.48 N m."
     assert told in str(along_roller.drawn(tilted))
     panel = along_roller.drawn(tree).chart.panels[0]
     assert panel.marks[0].y.max() == pytest.approx(float(found.line_pressure.max()) / 1e9)
@@ -266,6 +268,24 @@ def test_what_lies_along_the_heaviest_roller_is_told_in_words_of_rollers(tree):
     assert {"heaviest load of a roller", "rollers that touch both rings"} < set(rows)
     assert "no rib" in rows["not in it"]
     assert "rollers" in rows["tones"]
+    assert "resonance of the most loaded roller between the rings" in str(tree["scenario"].attrs)
+
+
+def test_rings_of_rollers_that_cannot_be_are_told_of_rollers():
+    case = as_case(CASE)
+    still = np.zeros((3, 4))
+    run = SimpleNamespace(
+        cage=np.linspace(0.0, 1.0, 4),
+        inner_force=np.zeros((13, 4)),
+        inner_motion=still + 7.5e-3,
+        outer_motion=still,
+        flank_force=still[:0],
+    )
+    told = [finding.message for finding in out_of_place(case, "areal", run)]
+    assert len(told) == 2
+    assert told[0].startswith("displacement of a ring over the diameter of a roller")
+    assert "of the rollers on the inner ring" in told[1]
+    assert "ball" not in str(told)
 
 
 def test_heights_count_by_the_stiffness_of_their_slices():

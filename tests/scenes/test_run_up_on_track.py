@@ -37,7 +37,7 @@ def test_speed_stands_beside_the_forces_and_points_are_passed_as_it_grows(tree):
     time = rolling["time"].values
     first, last = 80.0 / 3.6, 96.0 / 3.6
     assert rolling["momentary_speed"].values == pytest.approx(first + (last - first) * time / 0.2)
-    assert tree.attrs["title"] == "Wheel on rail at 22.222 to 26.667 m/s"
+    assert tree.attrs["title"] == "Wheel on rail at 80 to 96 km/h"
     force = rolling["contact_force"].values.reshape(-1, len(time))[0]
     assert force.mean() == pytest.approx(65e3, rel=0.02)
 

@@ -216,7 +216,7 @@ class BearingUnderLoad(AnyCase):
         """Say what runs."""
         name = f" {self.bearing.name}" if self.bearing.name else ""
         element = self.bearing.bearing.ELEMENT.capitalize()
-        return f"{element} bearing{name} at {span_of(self.speed, 60.0)} 1/min"
+        return f"{element} bearing{name} at {span_of(self.speed, 'Hz', '1/min')}"
 
     @cached_property
     def static(self) -> LoadedBearing:

@@ -210,7 +210,7 @@ class WheelOnRail(OverTrack, defaults=DEFAULTS):
     @property
     def title(self) -> str:
         """Say what rolls over what in this case."""
-        return f"Wheel on rail at {span_of(self.speed)} m/s"
+        return f"Wheel on rail at {span_of(self.speed, 'm/s', 'm/s')}"
 
     @property
     def usual_step(self) -> float:

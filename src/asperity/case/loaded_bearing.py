@@ -110,9 +110,9 @@ def _of_case(keys: dict[str, Any], source: str, options: Mapping[str, Any]) -> d
     on_rollers = keys["kind"] == "roller-bearing"
     case = (RollerBearingUnderLoad if on_rollers else BearingUnderLoad).read(keys, Origin.file(source))
     if isinstance(case.speed, SpeedCourse) and options.get("speed") is None:
-        span = span_of(case.speed, 60.0)
+        span = span_of(case.speed, "Hz", "1/min")
         OutOfRangeWarning.warn(
-            f"The speed of {source} changes, {span} 1/min: what follows is that"
+            f"The speed of {source} changes, {span}: what follows is that"
             f"{at_fastest(case.speed, '1/min', 60.0)[1:]}. Take --speed for another."
         )
     carried: dict[str, Any] = {

@@ -32,6 +32,6 @@ class MeasuredKeys(Section):
 class MeasuredBearingKeys(Section):
     """What was measured at a bearing: the report says how far it is from what was computed."""
 
-    tone: Path | None = _table("tones of raceways, balls or cage", "tones.csv")
+    tone: Path | None = _table("tones of raceways, of what rolls or of the cage", "tones.csv")
     band_velocity: Path | None = _table("velocities of the outer ring in bands of ISO 15242", "velocity.csv")
     envelope_line: Path | None = _table("amplitudes of lines of the envelope", "lines.csv")

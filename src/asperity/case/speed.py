@@ -12,7 +12,7 @@ from asperity.case.tables import TableFile, TableSource, read_table
 from asperity.errors import InputError
 from asperity.parameters import DURATION_OR_ZERO, FROM_PYTHON, Origin, Quantity
 from asperity.speeds import SpeedCourse
-from asperity.units import unit_in, written
+from asperity.units import factor, quantity, unit_in, written
 from asperity.written_numbers import rounded
 
 _RUN = re.compile(r"\s*(\S.*?)\s*\.\.\s*(\S+\s+\S.*?)\s+in\s+(\S.*?)\s*", re.IGNORECASE)
@@ -117,13 +117,16 @@ def written_course(course: SpeedCourse, dimension: str, unit: str, *, exactly: b
     return ", ".join(f"{speed}{_AT}{time}" for time, speed in points)
 
 
-def span_of(speed: float, factor: float = 1.0) -> str:
-    """A speed in words, times a factor: one number, or from the first to the last of a course."""
+def span_of(speed: float, dimension: str, unit: str) -> str:
+    """A speed in words, with its unit as it was typed: one, or from the first to the last of a course."""
     if not isinstance(speed, SpeedCourse):
-        return rounded(factor * speed, 5)
-    first = factor * speed.speeds[0]
-    last = factor * speed.speeds[-1]
-    return f"{rounded(float(first), 5)} to {rounded(float(last), 5)}"
+        text = written(speed, dimension, unit)
+        typed = quantity(text, dimension) == speed
+        return text if typed else f"{rounded(speed / factor(unit, dimension), 5)} {unit}"
+    first, last = (span_of(float(each), dimension, unit) for each in speed.speeds[[0, -1]])
+    if unit_in(first) == unit_in(last):
+        first = first.removesuffix(f" {unit_in(last)}")
+    return f"{first} to {last}"
 
 
 def refuse_course(speed: float, where: str) -> None:

@@ -107,7 +107,7 @@ class SlidingContact:
     turns back; in a shift, each cell slips under the mean of its bounds before and after. Where pressures
     stay as they are and slip goes one way that is ∫ F · d(shift) less the growth of the elastic energy,
     however long the shift. In rolling of unlike bodies the displacement by their pressure is counted, too:
-    they need no force to slip.
+    they need no force to slip, and a pressure that leans ahead, with the moment that it has, drives it.
 
     Examples
     --------
@@ -180,8 +180,8 @@ class SlidingContact:
     def dissipated_power(self) -> float:
         """What friction turns into heat at the rolling speed, W: `work` times it.
 
-        In steady rolling exactly −V (F_x ξ + F_y η + M φ − C χ), from `force`, `creepage`, `moment` and
-        `second_moment`.
+        In steady rolling of like bodies exactly −V (F_x ξ + F_y η + M φ − C χ), from `force`, `creepage`,
+        `moment` and `second_moment`; of unlike ones with V ∫ p x/R of the pressure, but for what cells miss.
         """
         return self.work * self.speed
 

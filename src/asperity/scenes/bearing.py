@@ -178,7 +178,8 @@ def _numerics(prepared: PreparedBearing, wall: float) -> Iterator[tuple[str, str
     case = prepared.case
     yield "time step", f"{rounded(case.step * 1e6, 4)} µs"
     yield "time steps per sample that is written", f"{case.steps_per_sample}"
-    yield "resonance of the most loaded ball between the rings", f"{rounded(case.ball_resonance, 4)} Hz"
+    element = case.bearing.bearing.ELEMENT
+    yield f"resonance of the most loaded {element} between the rings", f"{rounded(case.ball_resonance, 4)} Hz"
     yield "imbalance of the static solution", f"{rounded(case.static.imbalance, 1)} of the load"
     yield from rims_in_words(prepared)
     yield "wall time", f"{wall:.2f} s"

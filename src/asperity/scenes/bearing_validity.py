@@ -32,17 +32,18 @@ def bearing_findings(case: BearingUnderLoad, runs: dict[str, RolledBearing]) -> 
 
 
 def out_of_place(case: BearingUnderLoad, law: str, run: RolledBearing) -> Iterator[Finding]:
-    """Rings that are farther off than balls let them, and balls that do not carry the load in the mean."""
+    """Rings farther off than what rolls lets them, and a load that it does not carry in the mean."""
     of = case.bearing.bearing
+    element = of.ELEMENT
     angle = case.static.contact_angle
     moved = max(float(np.abs(each).max()) for each in (run.inner_motion, run.outer_motion))
     yield from beyond(
-        "displacement of a ring over the diameter of a ball",
+        f"displacement of a ring over the diameter of a {element}",
         moved / of.ball_diameter,
         OFF,
         "A ring is not held, or by springs too soft for what drives it.",
         "Check the stiffnesses of shaft and housing, loads and clearance.",
-        "a ring displaced by {} of a ball",
+        f"a ring displaced by {{}} of a {element}",
         law,
     )
     azimuth = run.cage + 2.0 * np.pi * np.arange(of.balls)[:, None] / of.balls
@@ -53,7 +54,7 @@ def out_of_place(case: BearingUnderLoad, law: str, run: RolledBearing) -> Iterat
     for way, force, load in zip(("radial", "axial"), (radial, axial), carried, strict=True):
         if load > 0.0:
             mean = float(np.mean(force)) / load
-            yield from load_missed(f"mean {way} force", "of the balls on the inner ring", mean, law)
+            yield from load_missed(f"mean {way} force", f"of the {element}s on the inner ring", mean, law)
 
 
 def _missed(runs: dict[str, RolledBearing]) -> Iterator[Finding]:

@@ -217,7 +217,7 @@ def _tilted(tree: DataTree) -> str:
     moment = data.number(tree, bearing.TILT_MOMENT)
     if not tilt or moment is None:
         return ""
-    return f" The inner ring is held at a tilt of {rounded(1e3 * tilt, 4)} mrad by {rounded(moment, 4)} N m."
+    return f" The inner ring is held at a tilt of {plain(1e3 * tilt)} mrad by {plain(moment)} N m."
 
 
 @figure(
@@ -498,7 +498,7 @@ def ball_contacts_table(tree: DataTree) -> ReportTable:
     moved = 1e6 * data.values(tree, bearing.RING_DISPLACEMENT)
     stiffness = 1e-6 * data.values(tree, bearing.RING_STIFFNESS)
     told = (
-        f"{way} {rounded(np.round(to.mean(), 6) + 0.0, 4)} µm, "
+        f"{way} {plain(np.round(to.mean(), 6) + 0.0, 4)} µm, "
         f"varying by {rounded(np.round(np.ptp(to), 6), 2)} µm, "
         f"{between(rounded(each.min(), 4), rounded(each.max(), 4))} MN/m"
         for way, to, each in zip(data.words(tree, bearing.DIRECTION), moved, stiffness, strict=True)

@@ -37,7 +37,8 @@ def _differences(tree: DataTree) -> Iterator[Series]:
     compared = data.differences(tree) | {TO_REFERENCE: "reference"}
     for entry, law in compared.items():
         for series in Of(entry, "{law}", optional=True)(tree):
-            yield replace(series, name=f"{series.name} minus {law}")
+            if series.name != law:
+                yield replace(series, name=f"{series.name} minus {law}")
 
 
 @figure(
