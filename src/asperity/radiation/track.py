@@ -2,13 +2,14 @@
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from scipy.special import h2vp, j1
 
 from asperity.arguments import Array, ArrayLike, Complex, finite_array, positive
 from asperity.structures.lateral_rail import LateralTrack
-from asperity.structures.mobility import ForceOverBay, Mobility
+from asperity.structures.mobility import FEWEST_NODES, ForceOverBay, Mobility
 from asperity.structures.track import Track
 
 SPEED_OF_SOUND = 343.2
@@ -285,9 +286,6 @@ class SideOfRail:
         return IMPEDANCE * 2.0 * self.height * self.radiation_ratio(frequency) * square
 
 
-FEWEST_NODES = 4  # of Gauss's rule, beside one per radian of the shortest wave
-
-
 def squared_lateral_mobility(
     track: LateralTrack, frequency: ArrayLike, places: Array, place: float
 ) -> Complex:
@@ -299,7 +297,7 @@ def squared_lateral_mobility(
     frequency : array_like (f,)
         Hz, positive.
     places : ndarray (n,)
-        Of the contact in the bay, 0 to L, m, that lie symmetrically about its middle.
+        Of the contact in the bay, 0 to L, m, rising, that lie symmetrically about its middle.
     place : float
         Of the contact across the head, m from its middle, positive towards the field side.
 
@@ -313,25 +311,25 @@ def squared_lateral_mobility(
     omega = 2.0 * np.pi * above_zero(frequency)
     waves = track.waves(omega)
     spacing = track.track.sleeper_spacing
-    height = track.mean_squares
-    count = FEWEST_NODES + int(np.ceil(np.abs(waves.wavenumbers).max() * spacing))
+    edges = np.concatenate([[0.0], places, [spacing]])
+    count = FEWEST_NODES + int(np.ceil(np.abs(waves.wavenumbers).max() * np.diff(edges).max()))
     node, weight = (0.5 * each for each in np.polynomial.legendre.leggauss(count))
-    node = node + 0.5
 
-    def within(moved: Complex, length: float) -> Complex:
-        """Integral over a piece of the products of motions (x, m, i, f) at its nodes, (i, j, f)."""
-        total = np.einsum("x,xaif,ab,xbjf->ijf", weight, moved.conj(), height, moved, optimize=True)
-        return length * total
+    def between(begin: float, end: float) -> Complex:
+        """Integral of the products of motions by waves i and j over a piece of the bay, (f, i, j)."""
+        moved = waves.outgoing_at(0.5 * (begin + end) + (end - begin) * node)
+        shares = (end - begin) * weight
+        weighted = np.einsum("x,ab,fxbj->fxaj", shares, track.mean_squares, moved, optimize=True)
+        first, second = (each.reshape(len(omega), -1, each.shape[-1]) for each in (moved, weighted))
+        return first.conj().swapaxes(1, 2) @ second
 
-    bay = within(np.stack([waves.outgoing(spacing * x) for x in node]), spacing)
-    product = waves.multipliers.conj()[:, None] * waves.multipliers
-    behind = bay * product / (1.0 - product)
+    pieces = np.stack([between(*each) for each in pairwise(edges.tolist())])
+    ahead = np.cumsum(pieces[::-1], axis=0)[::-1]  # from each edge on
+    product = waves.multipliers.T.conj()[:, :, None] * waves.multipliers.T[:, None]
+    behind = ahead[0] * product / (1.0 - product)
     forces = track.contact_shapes(place)
     found = []
-    for x0 in places:
-        sent = waves.coefficients * np.einsum("aj...,na->nj...", waves.incoming(x0), forces)
-        rest = spacing - x0
-        near = [np.einsum("ajf,njf->anf", waves.outgoing(x0 + rest * x), sent) for x in node]
-        far = np.einsum("mif,njf,ijf->mnf", sent.conj(), sent, behind, optimize=True)
-        found.append(far + within(np.stack(near), rest))
-    return 2.0 * omega**2 * np.stack(found)
+    for x0, rest in zip(places, ahead[1:], strict=True):
+        sent = (waves.coefficients * np.einsum("aj...,na->nj...", waves.incoming(x0), forces)).T  # (f, j, n)
+        found.append(sent.conj().swapaxes(1, 2) @ (rest + behind) @ sent)
+    return 2.0 * omega**2 * np.moveaxis(np.stack(found), 1, -1)

@@ -69,6 +69,16 @@ class LateralWaves:
     def _of(self, x: float) -> Complex:
         return np.einsum("aijf,if->ajf", self.weights, np.sin(self.wavenumbers * x))
 
+    def outgoing_at(self, places: Array) -> Complex:
+        """Shapes (f, x, m, w) of the waves that decay towards growing x at places (x,), m, from 0 to L."""
+        back = np.sin(self.wavenumbers * (self.spacing - places)[:, None, None])
+        ahead = np.sin(self.wavenumbers * places[:, None, None])
+        by_free = np.moveaxis(self.weights, -1, 0).swapaxes(1, 2)  # (f, i, m, j)
+        both = np.concatenate([by_free, by_free * self.multipliers.T[:, None, None]], axis=1)
+        sines = np.concatenate([back, ahead], axis=1).transpose(2, 0, 1)
+        found = sines @ both.reshape(*both.shape[:2], -1)
+        return found.reshape(*sines.shape[:2], *both.shape[2:])
+
     def receptance(self, x: float, x0: float) -> Complex:
         """Motion at `x` per force at `x0`, (m, m, f); positions from any support, m."""
         found = self.receptances([max(x, x0)], min(x, x0))[0]
