@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.kernels.options import CALLED, LOOP, compiled
+from asperity.kernels.options import CALLED, LOOP, REASSOCIATE, compiled
 
 BLOCK = 512
 """Points whose coefficients are found at once."""
@@ -79,6 +79,16 @@ def splines_along(values, index):  # type: ignore[no-untyped-def]
     return result
 
 
+@compiled(**LOOP, **REASSOCIATE)
+def weighted_sums(values, weights, every, sums):  # type: ignore[no-untyped-def]
+    """Sums (k,) of as many values as there are weights, times these, each from `every` values further on."""
+    for k in range(sums.shape[0]):
+        total = 0.0
+        for i in range(weights.shape[0]):
+            total += weights[i] * values[k * every + i]
+        sums[k] = total
+
+
 STRIDE = 128
 """Places that follow from one exact value; rounding does not tell over so many."""
 
@@ -118,6 +128,20 @@ def add_near_fields(near, growth, shapes, slopes):  # type: ignore[no-untyped-de
             shapes[i, j] += rising + falling
             slopes[i, j] += growth[2, j] * (rising - falling)
             near[0, block, j], near[1, block, j] = rising * growth[0, j], falling * growth[1, j]
+
+
+@compiled(**LOOP)
+def write_seen(values, signs, rates, added, contact, first, seen):  # type: ignore[no-untyped-def]
+    """Write what a contact sees of modes (places, modes) from a first one on into all (places, n, s), or add.
+
+    Times signs of the modes (modes,) and rates at the places, or one for all (1,).
+    """
+    last = rates.shape[0] - 1
+    for i in range(values.shape[0]):
+        rate = rates[min(i, last)]
+        for j in range(values.shape[1]):
+            before = seen[i, contact, first + j] if added else 0.0
+            seen[i, contact, first + j] = before + signs[j] * rate * values[i, j]
 
 
 # --- piecewise cubics

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from asperity.arguments import Array, Flags, Integers
+from asperity.kernels.curves import write_seen
 from asperity.kernels.pointforce import SHIFTED, SLICED, Prepared, evaluate_all
 from asperity.laws.spec import SteppedLaw, settles
 from asperity.rolling.mechanism import Mechanism, RollingContact
@@ -82,13 +83,11 @@ class Course:
                 structure = self.mechanism.structures[side.structure]
                 if isinstance(structure, RailBetween):
                     continue
-                modes = slice(first[side.structure], first[side.structure + 1])
                 seen, slopes, rate = _seen_along(structure, side.trajectory, steps)
-                for into, values, factor in ((shapes, seen, side.sign), (rates, slopes, side.sign * rate)):
-                    if side.structure in written:
-                        into[:, k, modes] += factor * values
-                    else:
-                        np.multiply(factor, values, out=into[:, k, modes])
+                signs = np.broadcast_to(side.sign, seen.shape[1:]).astype(float)
+                where = side.structure in written, k, first[side.structure]
+                write_seen(seen, signs, np.ones(1), *where, shapes)
+                write_seen(slopes, signs, rate, *where, rates)
                 written.add(side.structure)
 
     def pieces(self, steps: range) -> list[Any]:
@@ -99,13 +98,13 @@ class Course:
         return [self.stepped[k] if k in self.stepped else laid_out(each, steps) for k, each in contacts]
 
 
-def _seen_along(structure: Modal, trajectory: Trajectory, steps: range) -> tuple[Array, Array, Array | float]:
-    """Mode shapes and their slopes (k, m) along a trajectory, and its rates, (k, 1) or one for all."""
+def _seen_along(structure: Modal, trajectory: Trajectory, steps: range) -> tuple[Array, Array, Array]:
+    """Mode shapes and their slopes (k, m) along a trajectory, and its rates, (k,) or one for all."""
     if trajectory.spacing is None or len(steps) == 1:
-        return *structure.shapes(trajectory.places(steps)), trajectory.rates(steps)[:, None]
+        return *structure.shapes(trajectory.places(steps)), trajectory.rates(steps)
     start = float(trajectory.places(steps[:1])[0])
     along = structure.shapes_along(start, trajectory.spacing * steps.step, len(steps))
-    return *along, float(trajectory.rates(steps[:1])[0])
+    return *along, trajectory.rates(steps[:1])
 
 
 def laid_out(contact: RollingContact, steps: range) -> Any:

@@ -1,7 +1,7 @@
 """A ball bearing is run by each of its laws: what of it was recorded."""
 
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any, Self
@@ -11,6 +11,7 @@ import numpy as np
 from asperity.arguments import Array
 from asperity.case.ball_bearing import BearingUnderLoad
 from asperity.errors import PhysicsWarning
+from asperity.kernels.curves import weighted_sums
 from asperity.laws import Need, spec_of
 from asperity.laws.film import WithFilm
 from asperity.laws.tilted import Tilted
@@ -49,6 +50,8 @@ ALIKE = 1e-6
 """Share of their loads by which balls may differ that are carried alike."""
 FORCES = ("inner_force", "outer_force")
 """They begin and end at once, where the filter rings: none is written that is below all that were found."""
+REACH, KAISER = 10, 5.0
+"""Of the low pass before samples are left out: its reach to either side, in samples that stay, and β."""
 SIGNALS = (*FORCES, "flank_force", "rib_force", "ball_motion", "inner_motion", "outer_motion", "acceleration")
 """What a run holds over time, beside what grows evenly."""
 
@@ -74,8 +77,22 @@ class ComputedBearing(PreparedBearing, RecordedRuns):
         return frozenset({"contact_force", "bearing"} | sensed)
 
 
-def compute_bearing(prepared: PreparedBearing, progress: Progress, share: float = 1.0) -> ComputedBearing:
-    """Run the bearing by each law, at the sampling rate of the case.
+def compute_bearing(prepared: PreparedBearing, progress: Progress) -> ComputedBearing:
+    """Run the bearing by each law, at the sampling rate of the case."""
+    every = prepared.case.steps_per_sample
+    found = {}
+    for name, run in _rolled(prepared, progress):
+        signals: dict[str, Any] = {each: thinned(getattr(run, each), every) for each in SIGNALS}
+        signals |= {each: np.maximum(signals[each], getattr(run, each).min()) for each in FORCES}
+        found[name] = replace(run, time=run.time[::every], cage=run.cage[::every], **signals)
+    runs = {name: run.steadied() for name, run in found.items()}
+    return ComputedBearing(**vars(prepared), runs=runs, rolled=found)
+
+
+def _rolled(
+    prepared: PreparedBearing, progress: Progress, share: float = 1.0
+) -> Iterator[tuple[str, RolledBearing]]:
+    """The bearing as each law rolls it, at all time steps.
 
     For a share of run-in and record; by laws that are looked up for all of it.
     """
@@ -120,19 +137,13 @@ def compute_bearing(prepared: PreparedBearing, progress: Progress, share: float 
             ScannedRaceway(on, on.states_under(each.min(), each.max()))
             for on, each in zip(ons, loads, strict=True)
         ]
-    found = {}
     for name in case.laws:
         if name in looked_up:
             run, scanned = within_scan(partial(looking_up, name), scanned, _visited, TRIED)
         else:
             inner, outer = laid(case, [of[name] for of in laws_of])
             run = once(name, inner, outer, share)
-        every = case.steps_per_sample
-        signals: dict[str, Any] = {each: thinned(getattr(run, each), every) for each in SIGNALS}
-        signals |= {each: np.maximum(signals[each], getattr(run, each).min()) for each in FORCES}
-        found[name] = replace(run, time=run.time[::every], cage=run.cage[::every], **signals)
-    runs = {name: run.steadied() for name, run in found.items()}
-    return ComputedBearing(**vars(prepared), runs=runs, rolled=found)
+        yield name, run
 
 
 def rolled_alone(computed: ComputedBearing, progress: Progress) -> dict[str, Array]:
@@ -156,7 +167,8 @@ def rolled_alone(computed: ComputedBearing, progress: Progress) -> dict[str, Arr
             if kept is None and _stands_still(part, progress):
                 found[name] = np.zeros_like(computed.first.acceleration)
             else:
-                found[name] = compute_bearing(part, progress).runs[BY_PARTS].acceleration
+                ((_, run),) = _rolled(part, progress)
+                found[name] = thinned(run.steadied().acceleration, case.steps_per_sample)
     return found
 
 
@@ -173,7 +185,8 @@ def _stands_still(prepared: PreparedBearing, progress: Progress) -> bool:
     if unlike or isinstance(case.speed, SpeedCourse) or turn >= case.duration:
         return False
     share = (case.settling + turn) / (case.settling + case.duration)
-    return not compute_bearing(prepared, progress, share).runs[BY_PARTS].vibrates
+    ((_, run),) = _rolled(prepared, progress, share)
+    return not run.vibrates
 
 
 @dataclass(frozen=True, eq=False)
@@ -236,11 +249,25 @@ def cage_slip(case: BearingUnderLoad) -> Callable[[Array], Array]:
 
 
 def thinned(signal: Array, every: int) -> Array:
-    """A signal (…, n) at one of so many samples, without what the fewer samples do not hold."""
+    """A signal (…, n) at one of so many samples, without what the fewer samples do not hold.
+
+    From the line between its ends on, which is zero beyond them, it is averaged with the weights of an ideal
+    low pass under a Kaiser window (β = 5) that reaches over `REACH` of the fewer samples to either side.
+    """
     if every == 1:
         return signal
     if not signal.size:
         return signal[..., ::every]
-    from scipy.signal import resample_poly
-
-    return resample_poly(signal, 1, every, axis=-1, padtype="line")
+    reach = REACH * every
+    ideal = np.sinc(np.arange(-reach, reach + 1) / every) * np.kaiser(2 * reach + 1, KAISER)
+    count = signal.shape[-1]
+    along = np.arange(count) / max(count - 1, 1)
+    rows = signal.reshape(-1, count)
+    found = np.empty((len(rows), -(-count // every)))
+    beside = np.zeros(count + 2 * reach)
+    for row, averaged in zip(rows, found, strict=True):
+        line = row[0] + (row[-1] - row[0]) * along
+        np.subtract(row, line, out=beside[reach : reach + count])
+        weighted_sums(beside, ideal / ideal.sum(), every, averaged)
+        averaged += line[::every]
+    return found.reshape(*signal.shape[:-1], -1)
