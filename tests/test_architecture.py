@@ -4,7 +4,6 @@ import ast
 import re
 import subprocess
 import sys
-from functools import cache
 from importlib.util import resolve_name
 from pathlib import Path
 
@@ -14,17 +13,9 @@ import asperity
 from asperity import laws
 from asperity.case.cases import case_classes
 from asperity.scenes.observers import OVER_STRUCTURES
+from package_source import MODULES, SOURCE, nodes_of, parsed
 
 ROOT = Path(__file__).parents[1]
-SOURCE = Path(asperity.__file__).parent
-MODULES = sorted(SOURCE.rglob("*.py"))
-
-
-@cache
-def parsed(module):
-    """Text of a module, and its tree."""
-    text = module.read_text(encoding="utf-8")
-    return text, ast.parse(text)
 
 
 def test_imports_point_one_way():
@@ -51,7 +42,7 @@ def taken_by(path, root):
         return {(path.parent / each).resolve() for each in TAKEN.findall(path.read_text(encoding="utf-8"))}
     package = ".".join(path.relative_to(root.parent).parent.parts)
     found = set()
-    for node in ast.walk(parsed(path)[1]):
+    for node in nodes_of(path):
         if isinstance(node, ast.Import):
             found |= {file_of(each.name, root) for each in node.names}
         elif isinstance(node, ast.ImportFrom):
@@ -143,9 +134,8 @@ def test_public_names_are_listed():
 
 def test_modules_and_functions_stay_readable():
     for module in MODULES:
-        text, tree = parsed(module)
-        assert text.count("\n") <= 600, module
-        for node in ast.walk(tree):
+        assert parsed(module)[0].count("\n") <= 600, module
+        for node in nodes_of(module):
             if isinstance(node, ast.FunctionDef):
                 doc = ast.get_docstring(node)
                 length = node.end_lineno - node.lineno + 1 - (doc.count("\n") + 1 if doc else 0)
@@ -155,9 +145,8 @@ def test_modules_and_functions_stay_readable():
 def test_nothing_is_pickled_and_no_text_is_evaluated():
     banned = {"pickle", "cPickle", "dill", "joblib", "shelve", "marshal", "eval", "exec"}
     for module in MODULES:
-        text, tree = parsed(module)
-        assert not re.search(r"allow_pickle\s*=\s*True", text), module
-        for node in ast.walk(tree):
+        assert not re.search(r"allow_pickle\s*=\s*True", parsed(module)[0]), module
+        for node in nodes_of(module):
             names = set()
             if isinstance(node, ast.Import):
                 names = {alias.name.split(".")[0] for alias in node.names}
@@ -175,7 +164,7 @@ def test_hdf5_is_opened_at_one_place():
     (written,) = (node for node in MODULES if node.name == "netcdf.py")
     assert re.findall(r"h5py\.File\((.*?)\)", parsed(written)[0]) == ['file, "w", track_order=True']
     for module in set(MODULES) - {written}:
-        for node in ast.walk(parsed(module)[1]):
+        for node in nodes_of(module):
             names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
             names += [node.module or ""] if isinstance(node, ast.ImportFrom) else []
             opens = {name.partition(".")[0] for name in names} & {"h5py", "h5netcdf", "netCDF4"}
@@ -186,8 +175,7 @@ def test_a_result_names_none_of_its_observers():
     """A further one is its file and its name in one list."""
     homes = {each.observe.__module__ for each in OVER_STRUCTURES}
     for name in ("result.py", "over_frequency.py", "compute.py"):
-        tree = parsed(SOURCE / "scenes" / name)[1]
-        for node in ast.walk(tree):
+        for node in nodes_of(SOURCE / "scenes" / name):
             if isinstance(node, ast.ImportFrom):
                 named = {f"{node.module}.{each.name}" for each in node.names} | {node.module}
                 assert not named & homes, f"{name}: {named & homes}"
@@ -209,7 +197,7 @@ def test_nothing_beside_a_kind_asks_of_which_kind_a_case_is():
     asked = set()
     for module in MODULES:
         place = module.relative_to(SOURCE).as_posix()
-        for node in ast.walk(parsed(module)[1]):
+        for node in nodes_of(module):
             called = node.func if isinstance(node, ast.Call) else None
             if isinstance(called, ast.Name) and called.id in ("isinstance", "issubclass"):
                 words = {ast.unparse(each).rpartition(".")[2] for each in ast.walk(node.args[1])}
@@ -261,13 +249,12 @@ def test_nothing_but_the_laws_decides_by_their_names():
     """
     own = set(laws.names())
     for module in (module for module in MODULES if module.parent.name != "laws"):
-        tree = parsed(module)[1]
         known = {
             each.id: node.value
-            for node in tree.body if isinstance(node, ast.Assign)
+            for node in parsed(module)[1].body if isinstance(node, ast.Assign)
             for each in node.targets if isinstance(each, ast.Name)
         }  # fmt: skip
-        for node in ast.walk(tree):
+        for node in nodes_of(module):
             called = isinstance(node, ast.Call) and ast.unparse(node.func).rpartition(".")[2]
             decides = isinstance(node, ast.Compare) or called in ("Choice", "one_of")
             decides |= isinstance(node, ast.BinOp) and isinstance(node.op, ast.BitAnd)

@@ -2,13 +2,12 @@
 
 import ast
 import re
-from pathlib import Path
 
 import pytest
 
-import asperity
 from asperity import errors
 from asperity.errors import CaseError, ComputationError, InputError, Outcome, PhysicsWarning
+from package_source import MODULES, SOURCE, nodes_of, parsed
 
 
 @pytest.mark.parametrize(("error", "code", "message"), [
@@ -38,10 +37,10 @@ def test_outcomes_that_failed_give_advice(outcome):
     assert outcome.ok or "; try" in outcome.value
 
 
-def read_by_people(text):
+def read_by_people(module):
     """Texts in a module that are no docstrings, no types, and no names that stand alone."""
     silent = set()
-    for node in ast.walk(ast.parse(text)):
+    for node in nodes_of(module):
         types = getattr(node, "annotation", None), getattr(node, "returns", None)
         silent |= {id(part) for of in types if of is not None for part in ast.walk(of)}
         if isinstance(node, ast.Expr):
@@ -53,19 +52,17 @@ def read_by_people(text):
 
 def test_nothing_that_people_read_has_class_names_or_backticks():
     """Texts of the whole program: messages, warnings, help, keys, reports. Full names of Python may stand."""
-    root = Path(asperity.__file__).parent
-    modules = {path: path.read_text(encoding="utf-8") for path in root.rglob("*.py")}
-    classes = {name for text in modules.values() for name in re.findall(r"^class (\w+)", text, re.M)}
+    classes = {name for path in MODULES for name in re.findall(r"^class (\w+)", parsed(path)[0], re.M)}
     compound = "|".join(sorted(name for name in classes if re.match("[A-Z][a-z]+[A-Z]", name)))
     named = re.compile(rf"`|(?<![\w.])({compound})\b")
     assert named.search("Take `table`.")
     assert named.search("a MissingSourceWarning")
     found = [
-        f"{path.relative_to(root)}:{line}: {words}"
-        for path, text in modules.items()
-        for line, words in read_by_people(text)
+        f"{path.relative_to(SOURCE)}:{line}: {words}"
+        for path in MODULES
+        for line, words in read_by_people(path)
         if named.search(words)
     ]
     assert found == []
-    templates = [path.read_text(encoding="utf-8") for path in root.rglob("*.jinja")]
+    templates = [path.read_text(encoding="utf-8") for path in SOURCE.rglob("*.jinja")]
     assert not [text for text in templates if re.search(r"\.category\b", text)]

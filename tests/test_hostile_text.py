@@ -34,7 +34,7 @@ from asperity.units import quantity
 
 BALL = 'kind = "ball-on-beam"\n'
 ROUGH = '\n[surface]\nrms = "1 um"\n'
-MANY = 1_000_000
+MANY = 300_000
 LONG_NAME = "a" * 300
 UM = {"height_unit": "um", "pixel": "1 um"}
 

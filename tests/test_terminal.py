@@ -8,11 +8,10 @@ from pathlib import Path
 
 import pytest
 
-import asperity
 from asperity.errors import printable
 from asperity.terminal import say, say_table
+from package_source import MODULES, nodes_of
 
-SOURCE = Path(asperity.__file__).parent
 CASE = 'kind = "ball-on-beam"\nduration = "0.01 s"\nlaws = ["hertz"]\n[surface]\nspectrum = "iso3095"\n'
 WRITERS = {
     "terminal.py",
@@ -26,10 +25,10 @@ full = pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that
 
 
 def test_nothing_else_writes_to_the_terminal():
-    for module in sorted(SOURCE.rglob("*.py")):
+    for module in MODULES:
         if module.name in WRITERS:
             continue
-        for node in ast.walk(ast.parse(module.read_text(encoding="utf-8"))):
+        for node in nodes_of(module):
             name = getattr(node, "id", getattr(node, "attr", ""))
             assert name not in {"print", "echo", "secho", "stdout", "stderr", "Console"}, f"{module}: {name}"
             if isinstance(node, ast.Import) and module.name != "text_files.py":

@@ -4,12 +4,10 @@ import ast
 import re
 import textwrap
 from itertools import pairwise
-from pathlib import Path
 
 import pytest
 import xarray as xr
 
-import asperity
 from asperity.reporting.data import typed_words
 from asperity.written_numbers import (
     between,
@@ -22,6 +20,7 @@ from asperity.written_numbers import (
     unbroken,
     with_article,
 )
+from package_source import MODULES, SOURCE, nodes_of
 
 
 @pytest.mark.parametrize(
@@ -84,14 +83,13 @@ ALWAYS, UNITS = re.compile(r"\.[1-3]g"), re.compile(r" (N|Hz|1/min|µm|um|µs|us
 """Digits that a usual number has more of before its point, and units in which numbers are that large."""
 
 
-def written_by_the_language(text):
+def written_by_the_language(nodes):
     """Numbers in the texts of a module of which Python may write ``1e+02``, but for what is read again."""
-    tree = ast.parse(text)
     read_again = {
-        id(each) for call in ast.walk(tree) if isinstance(call, ast.Call)
+        id(each) for call in nodes if isinstance(call, ast.Call)
         and isinstance(call.func, ast.Name) and call.func.id in ("float", "int") for each in call.args
     }  # fmt: skip
-    for text in ast.walk(tree):
+    for text in nodes:
         if not isinstance(text, ast.JoinedStr) or id(text) in read_again:
             continue
         for part, follows in pairwise([*text.values, ast.Constant("")]):
@@ -106,15 +104,15 @@ def written_by_the_language(text):
 
 def test_no_number_in_a_text_is_written_as_a_computer_does():
     """``{points:.2g} points`` reads 2.9e+09 points, ``{share:.2g} %`` 1e+02 %: `rounded` writes them out."""
-    package = Path(asperity.__file__).parent
     found = [
-        f"{path.relative_to(package)}, line {told}"
-        for path in sorted(package.rglob("*.py"))
+        f"{path.relative_to(SOURCE)}, line {told}"
+        for path in MODULES
         if "kernels" not in path.parts
-        for told in written_by_the_language(path.read_text(encoding="utf-8"))
+        for told in written_by_the_language(nodes_of(path))
     ]
     assert not found
-    assert len(list(written_by_the_language('f"{share:.2g} % of {force:.4g} N", float(f"{x:.3g}")'))) == 2
+    texts = ast.parse('f"{share:.2g} % of {force:.4g} N", float(f"{x:.3g}")')
+    assert len(list(written_by_the_language([*ast.walk(texts)]))) == 2
 
 
 COUNTED = re.compile(r"^(len\(.*\)|.*\.size|np\.count_nonzero\(.*\)|missing|removed|filled)$")
@@ -125,10 +123,10 @@ MORE_THAN_ONE = ("scenes/figures/sideways.py", "scenes/population.py", "surfaces
 
 def test_one_of_a_thing_is_not_many():
     """These were read: "received 1 waves", "1 points have no height", "1 samples"."""
-    source, plural = Path(asperity.__file__).parent, []
-    for file in sorted(source.rglob("*.py")):
-        name = file.relative_to(source).as_posix()
-        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+    plural = []
+    for file in MODULES:
+        name = file.relative_to(SOURCE).as_posix()
+        for node in nodes_of(file):
             values = node.values if isinstance(node, ast.JoinedStr) and name not in MORE_THAN_ONE else ()
             for told, after in pairwise(values[:2]):  # further on, "at most" and "all" may stand before
                 if isinstance(told, ast.FormattedValue) and isinstance(after, ast.Constant):

@@ -202,9 +202,12 @@ def finite_array(
     if shape is not None and not _fits(array.shape, shape):
         received = count_of(array.size, "number") if array.ndim == 1 else f"shape {array.shape}"
         raise InputError(what, received, str(count) if count is not None else allowed)
-    wrong = ~(np.isfinite(array) & (array > above) & (array >= at_least) & (array < below))
-    if wrong.any():
-        raise InputError(what, float(array[wrong][0]), allowed)
+    right = np.isfinite(array)
+    for within, limit in ((np.greater, above), (np.greater_equal, at_least), (np.less, below)):
+        if math.isfinite(limit):
+            right &= within(array, limit)
+    if not right.all():
+        raise InputError(what, float(array[~right][0]), allowed)
     if rising and (np.diff(array, axis=0) <= 0.0).any():
         raise InputError(what, "numbers that do not rise", allowed)
     return array

@@ -20,7 +20,8 @@ def known_pieces(arrays: Iterable[Array]) -> Iterator[Array]:
         flat = values.reshape(-1) if values.ndim == 1 else values.ravel(order="K")
         for first in range(0, flat.size, TOGETHER):
             piece = flat[first : first + TOGETHER]
-            yield piece[np.isfinite(piece)]
+            known = np.isfinite(piece)
+            yield piece if known.all() else piece[known]
 
 
 class Ranked:

@@ -7,6 +7,7 @@ in wavelength are those in wavenumber read backwards, since both have their cent
 
 import math
 from collections.abc import Callable
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -21,6 +22,8 @@ HALF_BAND = 10.0 ** (1.0 / 20.0)
 TOGETHER = 2**15
 """Samples that are transformed at a time: each call takes time of its own."""
 
+LONGEST_KEPT = 2**17
+"""Samples of windows that are kept, at most: a megabyte."""
 LEAST_PRODUCT = 10.0
 """Bandwidth times averaging time B T below which a band level says little: its standard deviation,
 4.34/sqrt(B T) dB, is then above 1.4 dB (the relative error of an rms value is 1/(2 sqrt(B T)))."""
@@ -135,6 +138,10 @@ def lowest_band(samples: int, step: float, *, segment: int | None = None) -> flo
 
 def hann_window(length: int, *, centred: bool = False) -> Array:
     """Hann window of `length` samples, periodic from the first of them; centred, even about their middle."""
+    return _window_kept(length, centred).copy() if length <= LONGEST_KEPT else _window(length, centred)
+
+
+def _window(length: int, centred: bool) -> Array:
     window = np.arange(length, dtype=np.float64)
     if centred:
         window += 0.5
@@ -143,6 +150,9 @@ def hann_window(length: int, *, centred: bool = False) -> Array:
     window *= -0.5
     window += 0.5
     return window
+
+
+_window_kept = lru_cache(maxsize=4)(_window)  # records are read in many pieces of few lengths
 
 
 def averaging_time(samples: int, spacing: float, *, segment: int | None = None) -> float:

@@ -4,11 +4,9 @@ import ast
 import math
 import re
 from functools import cache
-from pathlib import Path
 
 import pytest
 
-import asperity
 from asperity.case import PRESETS
 from asperity.case.any_case import entries
 from asperity.case.cases import as_case, case_class
@@ -16,10 +14,9 @@ from asperity.errors import CaseError
 from asperity.parameters import ListOf, Number, Quantity, Text, limits_in
 from asperity.structures.track_parameters import LAYERS
 from asperity.units import quantity
+from package_source import MODULES, SOURCE, nodes_of
 from refusals import refusals
 
-SOURCE = Path(asperity.__file__).parent
-MODULES = sorted(SOURCE.rglob("*.py"))
 FILES = (".png", ".x3p", ".csv", ".nc", ".toml")
 
 
@@ -38,7 +35,7 @@ def sections():
 @cache
 def texts(module):
     """Pieces of text that people may see, with the line they stand in; no documentation."""
-    nodes = list(ast.walk(ast.parse(module.read_text(encoding="utf-8"))))
+    nodes = nodes_of(module)
     silent = {id(node.value) for node in nodes if isinstance(node, ast.Expr)}  # docstrings, also of constants
     said = [node for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str)]
     return [(node.lineno, node.value) for node in said if id(node) not in silent]
@@ -112,16 +109,15 @@ def test_every_number_has_limits_and_beyond_them_is_told_why(kind):
 DECLARES = ("key", "optional", "section", "parameter", "of_line", "of_file")
 
 
-def asked_for(text):
+def asked_for(module):
     """Names that are taken of an object, or named as text, but for those of declarations and defaults."""
-    tree = ast.parse(text)
     declared = {
         id(inside)
-        for call in ast.walk(tree)
+        for call in nodes_of(module)
         if isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id in DECLARES
         for inside in ast.walk(call)
     }
-    for node in ast.walk(tree):
+    for node in nodes_of(module):
         if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Load):
             yield node.attr
         elif isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in declared:
@@ -130,7 +126,7 @@ def asked_for(text):
 
 def test_every_key_is_asked_for():
     """One that nothing reads would be shown and ignored."""
-    asked = {name for path in MODULES for name in asked_for(path.read_text(encoding="utf-8"))}
+    asked = {name for path in MODULES for name in asked_for(path)}
     asked |= {f"{layer}_{what}" for layer in LAYERS for what in ("stiffness", "damping", "loss_factor")}
     known = {entry.dotted: entry.name for kind in PRESETS for entry in entries(case_class(kind))}
     assert len(known) > 150

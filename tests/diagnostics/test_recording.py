@@ -230,6 +230,7 @@ def test_a_recording_is_looked_at_beside_no_copy_of_itself(monkeypatch):
     monkeypatch.setattr("asperity.ranks.TOGETHER", 2**13)
     for module in ("missing_samples", "foretold"):
         monkeypatch.setattr(f"asperity.diagnostics.{module}.BLOCK", 2**13)
+    monkeypatch.setattr("asperity.spectra.LONGEST_KEPT", 2**13)
     signal = np.random.default_rng(0).integers(0, 10, 2**20).astype(float)
     Recording.of(signal[:1_000], RATE)  # imports
     tracemalloc.start()

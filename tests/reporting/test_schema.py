@@ -1,22 +1,20 @@
 """The schema is what is written and what is drawn: no name more, no name less, on either side."""
 
 import ast
-from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
 from schema_page import PAGE, SHARED, contents_of, page
 
-import asperity
 from asperity.errors import PhysicsWarning
 from asperity.scenes import schema
 from asperity.scenes.report import CHAPTERS, figures_of, page_of
 from asperity.schema import UNKNOWN, VERSION, Entry, bearing, convergence
 from asperity.schema.spectra import NO_SIGNAL
+from package_source import MODULES, nodes_of
 from small_cases import BEARING, unmarked
 
-SOURCE = Path(asperity.__file__).parent
 GROUPS = ("scenario", "surface", "contact", "rolling", "spectra", "track", "pass_by", "convergence",
           "measured", "effects", "bearing")  # fmt: skip
 
@@ -134,8 +132,8 @@ def test_names_stand_once():
 def test_no_drawing_and_no_writing_goes_by_a_string():
     """A path or a name in quotes would go on quietly after the schema has changed."""
     paths = tuple(f"{group}/" for group in GROUPS)
-    for module in SOURCE.rglob("*.py"):
-        for node in ast.walk(ast.parse(module.read_text(encoding="utf-8"))):
+    for module in MODULES:
+        for node in nodes_of(module):
             if isinstance(node, ast.Constant) and isinstance(node.value, str):
                 docstring = " " in node.value or "\n" in node.value
                 assert docstring or not node.value.startswith(paths), f"{module}: {node.value}"

@@ -25,7 +25,7 @@ def spoilt(surface, side, seed=3):
     at = rng.choice(bad.size, bad.size // 500, replace=False)
     bad.flat[at] += rng.choice([-1, 1], at.size) * rng.uniform(5, 20, at.size) * bad.std()
     missing = np.zeros(bad.shape, dtype=bool)
-    while missing.mean() < 0.05:
+    while np.count_nonzero(missing) < 0.05 * missing.size:
         i, j = (rng.integers(0, n - side + 1) for n in bad.shape)
         missing[i : i + side, j : j + side] = True
     bad[missing] = np.nan

@@ -10,7 +10,7 @@ from asperity.diagnostics.missing_samples import BLOCK, Mask, Runs, joined, runs
 ORDER = 11
 """Samples from which the next one is foretold: two for each of five tones, and one for the mean."""
 PARTS, PART = 32, 20 * ORDER
-"""Parts of a signal, and samples of each: in the best foretold one nothing happens."""
+"""Parts of a signal at most, and samples of each: in the best foretold one nothing happens."""
 QUIET = 0.01
 """Of the median size of the signal, that what is not foretold may have for tones to make it."""
 UNLIKE = 30.0
@@ -41,8 +41,9 @@ def unforetold(values: Array, most: float) -> Runs:
 
 
 def _parts(values: Array) -> Array:
-    """Parts of a signal (n,), evenly spread, (PARTS, samples)."""
-    firsts = np.linspace(0, max(values.size - PART, 0), PARTS).astype(int)
+    """Parts of a signal (n,), evenly spread, which overlap by half at most, (parts, samples)."""
+    last = max(values.size - PART, 0)
+    firsts = np.linspace(0, last, min(PARTS, 1 + 2 * last // PART)).astype(int)
     return np.array([values[first : first + PART] for first in firsts])
 
 

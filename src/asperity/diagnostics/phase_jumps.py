@@ -46,7 +46,7 @@ def lost_between(values: Array, turn: float) -> Runs:
 def _dominant(values: Array, turn: float) -> float:
     """Frequency of a tone that has half of the mean square of a signal (n,), cycles a sample; 0 for none."""
     size = min(max(SEGMENT, int(TURNS * turn)), LONGEST, values.size)
-    firsts = np.linspace(0, values.size - size, SEGMENTS).astype(int)
+    firsts = np.unique(np.linspace(0, values.size - size, SEGMENTS).astype(int))
     frequency, density = psd(values[:size], 1.0)
     for first in firsts[1:]:
         density += psd(values[first : first + size], 1.0)[1]
