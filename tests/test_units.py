@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from asperity import unit_table
 from asperity.errors import InputError
 from asperity.unit_table import BASE, UNITS, scale_of
 from asperity.units import factor, quantity, written
@@ -169,3 +170,10 @@ def test_an_angle_is_a_number_but_for_frequencies_which_count_turns():
     assert quantity("5 kN m/rad", "N m") == 5000.0
     assert quantity("1 turn", "rad") == pytest.approx(2.0 * math.pi, rel=1e-15)
     assert quantity("3 dB/km", "dB/m") == 0.003
+
+
+def test_of_the_table_of_units_those_are_read_that_are_asked_for():
+    for function in (unit_table.scale_of, unit_table.named_unit, unit_table._defined):
+        function.cache_clear()
+    assert scale_of("kN s/mm").value == 1e6
+    assert unit_table._defined.cache_info().currsize == 3

@@ -4,7 +4,7 @@ import math
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import MISSING, asdict, dataclass, field, fields, replace
-from functools import cache
+from functools import cache, cached_property
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, NoReturn
@@ -77,11 +77,6 @@ class ValueKind:
         raise InputError("value", shown(value), self.allowed, remedy)
 
 
-def is_absurd(value: float) -> bool:
-    """Whether a number is so large or small that its products are not finite."""
-    return value != 0 and not LEAST <= abs(value) <= MOST
-
-
 @dataclass(frozen=True, kw_only=True)
 class Bounded(ValueKind):
     """A number within bounds: greater than one, not less and not more than another; perhaps also "inf"."""
@@ -92,8 +87,9 @@ class Bounded(ValueKind):
     infinite: bool = False
 
     def holds(self, value: float) -> bool:
-        """Whether a number lies within them."""
-        return not (
+        """Whether a number lies within them, and its products with others are finite."""
+        usual = value == 0 or LEAST <= abs(value) <= MOST or (self.infinite and value == math.inf)
+        return usual and not (
             (self.above is not None and value <= self.above)
             or (self.at_least is not None and value < self.at_least)
             or (self.at_most is not None and value > self.at_most)
@@ -133,14 +129,15 @@ class Quantity(Bounded):
     def __call__(self, value: object, origin: Origin = FROM_PYTHON) -> float:
         """Return the value in SI."""
         number = self._number(value.item() if isinstance(value, np.generic) else value, origin)
-        if not math.isfinite(number) and not (self.infinite and number > 0):
-            self.refuse(value, "Give a finite value.")
-        if math.isfinite(number) and is_absurd(number):
+        if self.holds(number):
+            return number
+        remedy = ""
+        if not math.isfinite(number):
+            remedy = "Give a finite value."
+        elif number and not LEAST <= abs(number) <= MOST:
             lie = f"between {rounded(LEAST)} and {rounded(MOST)}"
-            self.refuse(value, f"In {self.dimension}, numbers lie {lie}.")
-        if not self.holds(number):
-            self.refuse(value)
-        return number
+            remedy = f"In {self.dimension}, numbers lie {lie}."
+        self.refuse(value, remedy)
 
     def _number(self, value: object, origin: Origin) -> float:
         if isinstance(value, int | float) and not isinstance(value, bool):
@@ -192,8 +189,7 @@ class Number(Bounded):
             return math.inf
         if isinstance(value, bool) or not isinstance(value, int if self.whole else int | float):
             self.refuse(value, "Write it without quotes and unit." if isinstance(value, str) else "")
-        finite = isinstance(value, int) or math.isfinite(value)
-        if not finite or is_absurd(value) or not self.holds(value):
+        if not self.holds(value):
             self.refuse(value)
         return value if self.whole else float(value)
 
@@ -216,8 +212,9 @@ class Choice(ValueKind):
 
     def __call__(self, value: object, origin: Origin = FROM_PYTHON) -> str:
         """Return the word."""
-        if not isinstance(value, str) or value not in self.known:
-            self.refuse(value, nearest(value, self.known))
+        words = self.known
+        if not isinstance(value, str) or value not in words:
+            self.refuse(value, nearest(value, words))
         return value
 
 
@@ -499,7 +496,7 @@ class Key:
     example: Any = None
     goes_with: str = ""
 
-    @property
+    @cached_property
     def one(self) -> ValueKind:
         """Kind of its value, or of each in its list."""
         return self.kind.each if isinstance(self.kind, ListOf) else self.kind

@@ -5,7 +5,7 @@ import re
 import tomllib
 from collections.abc import Mapping
 from fractions import Fraction
-from functools import cache
+from functools import cache, lru_cache
 from typing import NamedTuple
 
 from asperity.files import packaged
@@ -46,13 +46,14 @@ class Scale(NamedTuple):
 
     def times(self, other: "Scale", power: int) -> "Scale":
         """The product with a power of another unit."""
-        added = (mine + power * its for mine, its in zip(self.exponents, other.exponents, strict=True))
+        added = [mine + power * its for mine, its in zip(self.exponents, other.exponents, strict=True)]
         return Scale(self.factor * other.factor**power, self.of_pi + power * other.of_pi, tuple(added))
 
 
 ONE = Scale(Fraction(1), 0, (0,) * len(BASE))
 
 
+@lru_cache(maxsize=256)
 def scale_of(unit: str) -> Scale | None:
     """Scale of a product or quotient of powers of units; None where a name is unknown or misplaced.
 
@@ -65,7 +66,7 @@ def scale_of(unit: str) -> Scale | None:
     sign = 1
     power = 1
     pending = bool(words)
-    last: Scale | None = None
+    last: tuple[Scale, int] | None = None
     for word in words:
         if word in ("/", "per"):
             if pending or sign < 0:
@@ -76,16 +77,17 @@ def scale_of(unit: str) -> Scale | None:
             power = _WORDS[word]
             pending = True
         elif word in _AFTER and last is not None:
-            found = found.times(last, _AFTER[word] - 1)
+            named, exponent = last
+            found = found.times(named, (_AFTER[word] - 1) * exponent)
             last = None
         else:
             match = _POWER.match(word)
-            named = None if match is None else named_unit(match[1])
-            if match is None or named is None:
+            unit_named = None if match is None else named_unit(match[1])
+            if match is None or unit_named is None:
                 return None
             exponent = int(match[2]) if match[2] else {"²": 2, "³": 3}.get(match[3], 1)
-            last = ONE.times(named, sign * power * exponent)
-            found = found.times(last, 1)
+            last = unit_named, sign * power * exponent
+            found = found.times(*last)
             sign = 1
             power = 1
             pending = False
@@ -105,38 +107,38 @@ def is_known(name: str) -> bool:
 @cache
 def named_unit(name: str) -> Scale | None:
     """Scale of one unit by its name, with a prefix or in the plural; None where there is none."""
-    units = _units()
-    prefixes = _prefixes()
     plural = _PLURAL.fullmatch(name)
     for each in (name, *([plural[1]] if plural else [])):
-        if each in units:
-            return units[each]
+        if each in _DEFINED:
+            return _defined(_DEFINED[each])
         for length in range(len(each) - 1, 0, -1):
             prefix = each[:length]
             rest = each[length:]
-            if prefix in prefixes and rest in units and rest not in "%°":
-                return units[rest]._replace(factor=units[rest].factor * prefixes[prefix])
+            if prefix in _PREFIXES and rest in _DEFINED and rest not in "%°":
+                scale = _defined(_DEFINED[rest])
+                return scale._replace(factor=scale.factor * Fraction(_PREFIXES[prefix]))
     return None
 
 
-@cache
-def _prefixes() -> Mapping[str, Fraction]:
-    return {name: Fraction(scale) for names, scale in PREFIXES.items() for name in names.split()}
+def _one_by_one(table: Mapping[str, str]) -> dict[str, str]:
+    return {name: definition for names, definition in table.items() for name in names.split()}
+
+
+_PREFIXES = _one_by_one(PREFIXES)
+_DEFINED = _one_by_one(UNITS)
 
 
 @cache
-def _units() -> Mapping[str, Scale]:
-    base = {name: ONE._replace(exponents=tuple(int(each == name) for each in BASE)) for name in BASE}
-    units: dict[str, Scale] = {}
-    for names, definition in UNITS.items():
-        number, *parts = definition.split()
-        above, _, below = number.partition("/")
-        scale = ONE._replace(factor=Fraction(above) / Fraction(below or 1))
-        for part in parts:
-            name, _, power = part.partition("^")
-            if name == "pi":
-                scale = scale._replace(of_pi=1)
-            else:
-                scale = scale.times(base[name], int(power or 1))
-        units |= dict.fromkeys(names.split(), scale)
-    return units
+def _defined(definition: str) -> Scale:
+    """A unit as the table defines it, read where it is first asked for."""
+    number, *parts = definition.split()
+    above, _, below = number.partition("/")
+    exponents = dict.fromkeys(BASE, 0)
+    of_pi = 0
+    for part in parts:
+        name, _, power = part.partition("^")
+        if name == "pi":
+            of_pi = 1
+        else:
+            exponents[name] += int(power or 1)
+    return Scale(Fraction(above) / Fraction(below or 1), of_pi, tuple(exponents.values()))

@@ -110,6 +110,19 @@ def test_a_step_that_is_chosen_is_found_anew_on_another_grid():
     assert max(cells, 1.0 / cells) == pytest.approx(round(max(cells, 1.0 / cells)), rel=1e-9)
 
 
+def test_what_follows_of_keys_is_found_anew_when_they_are_chosen():
+    case = as_case(BALL | {"contact": {}})
+    worked_out = {"smooth_contact", "contact_resonance", "room", "rolled_range", "rolled_time", "chosen_step"}
+    assert case.time_step == case.chosen_step
+    assert worked_out <= vars(case).keys()
+    heavier = case.with_chosen(ball=case.ball.with_known(mass=2.0 * case.ball.contact_mass))
+    assert heavier.contact_resonance == pytest.approx(case.contact_resonance / math.sqrt(2.0))
+    assert heavier.ball.contact_mass == 2.0 * case.ball.contact_mass
+    later = case.with_known(settling=0.5 * case.settled_time)
+    assert later.settled_time == 0.5 * case.settled_time
+    assert later.rolled_range[0] == pytest.approx(later.record_start - later.speed * later.settled_time)
+
+
 def test_contacts_are_told_from_the_foremost_on():
     body = BOGIE | {"positions": ["0 m", "4 m", "9 m"]}
     uneven = as_case(ON_RAIL | {"kind": "bodies", "over": "track", "speed": "50 m/s", "body": body})

@@ -288,12 +288,12 @@ class BearingUnderLoad(AnyCase):
             return 0.0
         return 0.5 * math.sin(2.0 * angle) * of.balls * of.centrifugal_force(self.speed) / load
 
-    @property
+    @cached_property
     def kinematics(self) -> Kinematics:
         """What turns how fast, without slip, at the contact angle of the load."""
         return self.bearing.bearing.kinematics(self.speed, contact_angle=self.static.contact_angle)
 
-    @property
+    @cached_property
     def contacts(self) -> tuple[tuple[Hertz, float], tuple[Hertz, float]]:
         """Smooth contacts of a ball with the inner and the outer ring, and their largest static loads, N."""
         of = self.bearing.bearing
@@ -326,7 +326,7 @@ class BearingUnderLoad(AnyCase):
         )
         return inner, outer
 
-    @property
+    @cached_property
     def ball_resonance(self) -> float:
         """Natural frequency, Hz, of the most loaded ball between both rings at rest."""
         stiffness = sum(each.tangent_stiffness(each.approach(load)) for each, load in self.contacts)
@@ -385,7 +385,7 @@ class BearingUnderLoad(AnyCase):
         """Time between two samples that are written, s."""
         return 1.0 / self.sampling_rate
 
-    @property
+    @cached_property
     def steps_per_sample(self) -> int:
         """Time steps between two samples that are written."""
         wanted = 1.0 / max(self.resolved_rate, STEPS_PER_PERIOD * self.highest_frequency)

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -264,14 +265,14 @@ class Rolling(Ringing, FlatOnTread):
             return math.inf
         return self.raceway_radius if self.raceway == "inner" else -self.raceway_radius
 
-    @property
+    @cached_property
     def contact_mass(self) -> float:
         """Mass on each contact, kg."""
         if self.mass is not None:
             return self.mass
         return float(4.0 / 3.0 * np.pi * self.radius**3 * self.material.density)
 
-    @property
+    @cached_property
     def contact_load(self) -> float:
         """Static force of each contact, N: as given, or the weights, evened out."""
         above = sum(self.masses or ()) / len(self.places)
@@ -287,13 +288,13 @@ class Rolling(Ringing, FlatOnTread):
             )
         return above
 
-    @property
+    @cached_property
     def places(self) -> tuple[float, ...]:
         """Contacts of one body ahead of its rearmost one, m."""
         count = {"bogie": 2, "carriage": self.contacts}.get(self.type, 1)
         return tuple((self.distance or 0.0) * i for i in range(count))
 
-    @property
+    @cached_property
     def offsets(self) -> tuple[float, ...]:
         """All contacts ahead of the position of the run, m, body by body."""
         return tuple(position + place for position in self.positions for place in self.places)

@@ -1,6 +1,7 @@
 """Lengths that a case need not give: grid, window and waves follow from the contact of its smooth bodies."""
 
 import math
+from bisect import bisect_left, bisect_right
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from typing import TypeVar
@@ -98,8 +99,8 @@ def preferred_length(length: float, *, up: bool = False) -> float:
     decade = math.floor(math.log10(length))
     lengths = [float(f"{step}e{decade + more}") for more in (0, 1) for step in _STEPS]
     if up:
-        return min(each for each in lengths if each >= length * (1 - 1e-9))
-    return max(each for each in lengths if each <= length * (1 + 1e-9))
+        return lengths[bisect_left(lengths, length * (1 - 1e-9))]
+    return lengths[bisect_right(lengths, length * (1 + 1e-9)) - 1]
 
 
 def with_chosen(case: C, chosen: Mapping[str, Mapping[str, float]]) -> C:

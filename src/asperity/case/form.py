@@ -166,10 +166,11 @@ class Section:
         """Read all keys as a section of a whole, or the whole itself; return what is wrong with them."""
         errors = list[InputError]()
         held = self.__dict__
-        if twice := [pair for pair in self.RENAMED.items() if set(pair) <= given.keys()]:
-            return [InputError("", f"both {' and '.join(twice[0])}", "one of them", "Remove one.")]
+        for pair in self.RENAMED.items():
+            if given.keys() >= set(pair):
+                return [_both(pair)]
         try:
-            called = {self.called(name): value for name, value in given.items()}
+            called = {self.RENAMED.get(name, name): value for name, value in given.items()}
             given = self.prepared(numbered(called))
         except Problems as problems:
             return problems.errors
@@ -188,11 +189,14 @@ class Section:
         for name, inner in {**sections, **several}.items():
             value = given.get(name)
             value = value.given() if isinstance(value, Section) else value
-            made = held[name] = inner.model.__new__(inner.model)
-            if isinstance(value, Mapping | None):
-                errors += [_below(name, each) for each in made._fill(value or {}, origin, whole, name)]
-            else:
+            held[name], wrong = _of_nothing(inner)
+            if value and isinstance(value, Mapping):
+                held[name] = inner.model.__new__(inner.model)
+                wrong = held[name]._fill(value, origin, whole, name)
+            elif not isinstance(value, Mapping | None):
+                wrong = []
                 errors.append(InputError(name, shown(value), f"a section [{name}]"))
+            errors += [_below(name, each) for each in wrong]
             if (number := _NUMBER.search(name)) and (before := int(number[1]) - 1) > 1:
                 gap = name.replace(number[0], f"[{before}]")
                 errors += [] if gap in given else [InputError(name, f"one without {gap}", "one by one")]
@@ -202,8 +206,9 @@ class Section:
     def _inconsistent(self) -> list[InputError]:
         """What is wrong with keys that are right one by one; what follows from others is filled in before."""
         implausible = list[InputError]()
-        for name in [name for name in self.keys if name in self.given_names and self.keys[name].within]:
-            key = self.keys[name]
+        for name, key in self.keys.items():
+            if name not in self.given_names or not key.within:
+                continue
             value = getattr(self, name)
             every = (value.slowest, float(value)) if isinstance(value, SpeedCourse) else (value,)
             for each in value if isinstance(value, tuple) else every:
@@ -227,7 +232,7 @@ class Section:
 
     def _lonely(self) -> Iterator[InputError]:
         for name in sorted(self.given_names & self.keys.keys()):
-            if not self.is_active(name):
+            if self.keys[name].goes_with and not self.is_active(name):
                 companion, _, value = self.keys[name].goes_with.partition("=")
                 wanted = f'{companion} = "{value}"' if value else companion
                 received = _shown(getattr(self, name), self.keys[name].one)
@@ -236,7 +241,7 @@ class Section:
     def _both_given(self) -> Iterator[InputError]:
         for pair in self.ALTERNATIVES:
             if self.given_names.issuperset(pair):
-                yield InputError("", f"both {pair[0]} and {pair[1]}", "one of them", "Remove one.")
+                yield _both(pair)
 
     def is_active(self, name: str) -> bool:
         """Whether the key that `name` goes with is there."""
@@ -260,8 +265,7 @@ class Section:
         different = {
             name: getattr(self, name)
             for name in self.keys
-            if getattr(self, name) is not None
-            and content(getattr(self, name)) != content(self.default_of(name))
+            if name in self.given_names and content(getattr(self, name)) != content(self.default_of(name))
         }
         inner = {name: getattr(self, name).given() for name in self.section_names}
         return different | {name: keys for name, keys in inner.items() if keys}
@@ -269,25 +273,25 @@ class Section:
     def with_chosen(self, **chosen: Any) -> Self:
         """The same section with values, in SI, for keys that are left out, or other sections inside it.
 
-        What is chosen does not count as given.
+        What is chosen does not count as given. What was worked out of other values is forgotten.
         """
-        made = type(self).__new__(type(self))
         held = self.given_names - self.sections().keys()
-        made.__dict__.update(self.__dict__)
-        made.__dict__.update({name: each for name, each in chosen.items() if name not in held})
-        return made
+        return self._with({name: each for name, each in chosen.items() if name not in held}, self.given_names)
 
     def with_known(self, **values: Any) -> Self:
         """The same section with values, in SI, that are right and fit together: nothing is read again.
 
         Values count as given; None takes a key out. What was worked out of other values is forgotten.
         """
-        made = type(self).__new__(type(self))
         taken = {name for name, value in values.items() if value is None}
-        read = {name: each for name, each in vars(self).items() if name in self.keys or self.section_at(name)}
         usual = {name: default_value(self.keys[name]) for name in taken}
-        made.__dict__.update(read | values | usual)
-        made.__dict__["given_names"] = (self.given_names | values.keys()) - taken
+        return self._with(values | usual, (self.given_names | values.keys()) - taken)
+
+    def _with(self, values: Mapping[str, Any], given_names: frozenset[str]) -> Self:
+        """The same keys and sections with other values for some, and names of those that count as given."""
+        made = type(self).__new__(type(self))
+        read = {name: each for name, each in vars(self).items() if name in self.keys or self.section_at(name)}
+        made.__dict__.update({**read, **values, "given_names": given_names})
         return made
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -329,6 +333,13 @@ def _restored(model: type[Section], state: Mapping[str, Any]) -> Section:
 
 
 @cache
+def _of_nothing(inner: Inner) -> tuple[Section, list[InputError]]:
+    """A section of which nothing is given, made once, and what is wrong with that."""
+    made = inner.model.__new__(inner.model)
+    return made, made._fill({}, FROM_PYTHON, inner.model)
+
+
+@cache
 def default_value(key: Key) -> Any:
     """Default of a key, as a section has it."""
     return None if key.default is None else key.kind(key.default)
@@ -350,6 +361,10 @@ def _below(name: str, error: InputError) -> InputError:
     """An error told of something inside what has a name."""
     dot = "" if error.what.startswith("[") or not error.what else "."
     return error.about(f"{name}{dot}{error.what}")
+
+
+def _both(pair: tuple[str, str]) -> InputError:
+    return InputError("", f"both {pair[0]} and {pair[1]}", "one of them", "Remove one.")
 
 
 def _told(error: InputError) -> str:

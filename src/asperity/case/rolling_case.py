@@ -139,22 +139,28 @@ class RollingCase(AnyCase):
         ]
         return Hertz(contact_modulus(body.material, over.material), *radii)
 
-    @property
+    @cached_property
+    def resting_stiffness(self) -> float:
+        """Stiffness, N/m, of each contact between smooth bodies at rest."""
+        hertz = self.smooth_contact
+        return hertz.tangent_stiffness(hertz.approach(self.rolling.contact_load))
+
+    @cached_property
     def upper_stiffness(self) -> float:
         """Stiffness, N/m, of the contact above each element of a carriage, which is shaped as that below."""
-        if self.rolling.type != "carriage":
+        rolling = self.rolling
+        if rolling.type != "carriage":
             return 0.0
-        if self.rolling.springs:
-            return self.rolling.springs[0]
+        if rolling.springs:
+            return rolling.springs[0]
         hertz = self.smooth_contact
-        return hertz.tangent_stiffness(hertz.approach(self.rolling.upper_load))
+        return hertz.tangent_stiffness(hertz.approach(rolling.upper_load))
 
-    @property
+    @cached_property
     def contact_resonance(self) -> float:
         """Natural frequency, Hz, of the mass on a contact between smooth bodies at rest."""
-        hertz = self.smooth_contact
-        below = hertz.tangent_stiffness(hertz.approach(self.rolling.contact_load))
-        return math.sqrt((below + self.upper_stiffness) / self.rolling.contact_mass) / (2.0 * math.pi)
+        stiffness = self.resting_stiffness + self.upper_stiffness
+        return math.sqrt(stiffness / self.rolling.contact_mass) / (2.0 * math.pi)
 
     def rolled_in(self, time: float) -> float:
         """How far it rolls in a time from where the record starts, m; negative before it."""
@@ -183,7 +189,7 @@ class RollingCase(AnyCase):
 
     # --- time and place
 
-    @property
+    @cached_property
     def room(self) -> tuple[float, float] | None:
         """Positions of the run, m, at which the rearmost contact begins and the foremost is at the end."""
         extent = self.rolled_over.extent
@@ -205,13 +211,13 @@ class RollingCase(AnyCase):
         """Highest frequency that its spectra hold, Hz."""
         return self.numerics.highest_frequency
 
-    @property
+    @cached_property
     def record_start(self) -> float:
         """Position in m where the record starts: as given, or after the run-in."""
         beginning = 0.0 if self.room is None else self.room[0]
         return self.start if self.start is not None else beginning - self.rolled_in(-self.settled_time)
 
-    @property
+    @cached_property
     def settled_time(self) -> float:
         """Time in s that is rolled before the record starts.
 
@@ -230,7 +236,7 @@ class RollingCase(AnyCase):
         wanted = min(max(self.duration, SETTLED), LONGEST_SETTLING)
         return max(min(wanted, before, whole - self.duration), 0.0)
 
-    @property
+    @cached_property
     def rolled_time(self) -> float:
         """Time in s that is recorded: as given, or until the foremost contact is at the end."""
         if self.duration is not None:
@@ -239,7 +245,7 @@ class RollingCase(AnyCase):
             return self.speed.end if isinstance(self.speed, SpeedCourse) else RECORDED
         return reached(self.speed, self.room[1] - self.record_start)
 
-    @property
+    @cached_property
     def rolled_range(self) -> tuple[float, float]:
         """First and last position of the contact in m, from the start of the run-in."""
         first = self.record_start + self.rolled_in(-self.settled_time)

@@ -120,12 +120,6 @@ class Case(RollingCase):
         finest = 1.0 / (STEPS_PER_RESONANCE * self.contact_resonance)
         return usual if usual <= finest else on_grid(finest, per_cell)
 
-    def with_chosen(self, **chosen: Any) -> Self:
-        """As of any section; what follows from what is chosen is found anew."""
-        made = super().with_chosen(**chosen)
-        made.__dict__.pop("chosen_step", None)
-        return made
-
     # --- what is chosen, and what must fit together
 
     def default_of(self, name: str) -> Any:
@@ -188,10 +182,11 @@ class Case(RollingCase):
 
     def _problems_of_laws(self) -> Iterator[InputError]:
         """Laws that need no more texture than there is."""
-        smooth = self.surface.has_line and not self.surface.has_samples
+        line = self.surface.has_line
+        smooth = line and not self.surface.has_samples
         yield from self.problems_of_law_keys()
         for law in self.laws:
-            if self.surface.has_line and spec_of(law).needs_areal_path:
+            if line and spec_of(law).needs_areal_path:
                 allowed = "laws that need no texture beside the line: " + _listed(line=True)
                 yield InputError("laws", f'"{law}" with a path given as a line', allowed)
             elif smooth and Need.SAMPLES in spec_of(law).needs:

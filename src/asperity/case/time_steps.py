@@ -53,8 +53,7 @@ def resolving(case: RollingCase, usual: float) -> float:
 def longest_step(case: RollingCase, step: float) -> float:
     """Time in s up to which a step of about this length, s, is short for all that it has to resolve."""
     over = case.rolled_over
-    hertz = case.smooth_contact
-    stiffness = hertz.tangent_stiffness(hertz.approach(case.rolling.contact_load))
+    stiffness = case.resting_stiffness
     with PhysicsWarning.ignored():
         try:
             if isinstance(over, TrackKeys):

@@ -66,8 +66,9 @@ def refuse_vast(data: Mapping[str, Any], source: str) -> None:
             remedy = "Keep heights in a file of their own."
             raise InputError(source, f"{count} keys and values", allowed, remedy)
         level = [item for item in inner if isinstance(item, dict | list | tuple)]
-    if level:
-        raise _too_deep(source)
+        if not level:
+            return
+    raise _too_deep(source)
 
 
 def plain_data(value: Any, depth: int = 0) -> Any:

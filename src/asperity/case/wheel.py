@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -87,7 +87,7 @@ class Ringing(form.Section, parameters=_DIMENSIONS):
         """What the case says beside its named section."""
         return {name: each for name in _DIMENSIONS if (each := getattr(self, name)) is not None}
 
-    @property
+    @cached_property
     def outline(self) -> Array:
         """Outline of the drawn section (n, 2): radius and axial place, m."""
         if isinstance(self.section, str):

@@ -210,9 +210,10 @@ def relative_radius(*radii: float, what: str = "radii of the bodies (m)") -> flo
     for radius in radii:
         allowed = "numbers other than 0; infinite where a body is flat"
         require(not math.isnan(radius) and radius != 0.0, what, radius, allowed)
-    curvature = sum(1.0 / radius for radius in radii)
-    opens = curvature > 1e-9 * max(abs(1.0 / radius) for radius in radii)
-    received = " and ".join(f"{radius:.6g}" for radius in radii)
+    curvatures = [1.0 / radius for radius in radii]
+    curvature = sum(curvatures)
+    opens = curvature > 1e-9 * max(map(abs, curvatures))
+    received = " and ".join([f"{radius:.6g}" for radius in radii])
     remedy = "A hollow must be rounder than what lies in it: of a greater radius."
     require(opens, what, received, "bodies whose gap opens on both sides", remedy)
     return 1.0 / curvature

@@ -71,8 +71,8 @@ def _take(name: str, law: object) -> LawSpec:
 
 
 def _known() -> dict[str, LawSpec]:
-    """All laws and variants by name."""
-    _installed()
+    """All laws and variants by name, those of packages beside the program, which it registers, among them."""
+    extensions.taken(extensions.LAWS, _take)
     return _specs
 
 

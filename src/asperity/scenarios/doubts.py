@@ -214,8 +214,7 @@ def _doubt_above(case: Case) -> None:
         if not 1.0 / OF_A_BAR <= body.inertia / bar <= OF_A_BAR:
             told = f"a bar of its mass, as long as its contacts are apart, has {rounded(bar)} kg m^2"
             _warn(f"{name}.inertia", body.inertia, "kg m^2", told)
-    contact = case.smooth_contact
-    hard = contact.tangent_stiffness(contact.approach(body.contact_load))
+    hard = case.resting_stiffness
     for number, spring in enumerate(body.springs or ()):
         mass = body.masses[min(number, len(body.masses) - 1)]
         if (yields := GRAVITY * mass / spring) > body.radius:
