@@ -79,7 +79,7 @@ class PressedGrid(ElasticGrid):
         if soft is not None:
             softness, drop, flow = map(contiguous, (soft.softness, soft.drop, soft.flow))
             soft = Softness(softness, drop, flow, soft.yielding)
-        k, shape, size = len(approaches), self.shape, (len(approaches), len(planes))
+        k, shape, size = len(approaches), body.shape, (len(approaches), len(planes))
         known = self._known[np.float32 if single else np.float64]
         return scanning.Block(
             rows, body, planes, approaches, stride, load, 0.0, self.pressure_cap, rtol, MAX_ITERATIONS,

@@ -175,6 +175,8 @@ TOUCHED = 8192
 """Positions whose first touch is sought in one go."""
 CELLS = 32
 """Cells of a body after which it is asked whether higher ones can be the first to touch."""
+BESIDE = 2
+"""Cells beside those that overlap: one may be in contact, the next is not."""
 BATCH = 4096
 """Positions of a block on a device: enough to fill it, and few enough to be kept often."""
 BLOCK_BYTES = 1200
@@ -276,16 +278,34 @@ class ScanJob:
     def solve(self, rows: Array, planes: Array, edges: Edges | None = None) -> dict[str, NDArray[Any]]:
         """Forces of a block from a cold start, N, (k, positions), and its `Counts`, as a cache keeps them."""
         space = self.half_space
-        stride = self.stride
+        body = self.body
+        if self.device is None:
+            along, across = self.touched(float(rows.max() - planes.min()))
+            beneath = slice(along.start, len(rows) - len(body) + along.stop)
+            rows, body = rows[beneath, across], body[along, across]
+            edges = None if edges is None else edges.rearranged(lambda field: field[beneath, across])
         soft = None if edges is None else space.softness(edges)
-        block = space.block(
-            rows, self.body, planes, self.approaches, stride, self.rtol, self.single, soft=soft
-        )
+        block = space.block(rows, body, planes, self.approaches, self.stride, self.rtol, self.single, soft=soft)
         if self.device is None:
             space.solve_block(block)
         else:
             solve_batched(space, block, self.device)
         return {"forces": block.totals * space.cell_area, "counts": block.counts}
+
+    def touched(self, highest: float) -> tuple[slice, slice]:
+        """Rows and columns of the window that overlap where no height above its plane is higher, m.
+
+        With cells around them, from which pressure moves in with the surface, or where the window ends.
+        """
+        overlaps = self.body - highest < self.approaches[-1]
+        along, across = (np.flatnonzero(overlaps.any(axis=axis)) for axis in (1, 0))
+        if not len(along):
+            return slice(0, 1), slice(0, 1)
+        nx, ny = self.body.shape
+        return (
+            slice(max(int(along[0]) - BESIDE, 0), min(int(along[-1]) + 1 + BESIDE + self.stride, nx)),
+            slice(max(int(across[0]) - BESIDE, 0), min(int(across[-1]) + 1 + BESIDE, ny)),
+        )
 
     @property
     def remedy(self) -> str:
