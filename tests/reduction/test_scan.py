@@ -61,6 +61,22 @@ def test_a_contact_that_stays_as_it_is_takes_no_iteration():
     assert many.attrs["iterations"] == few.attrs["iterations"]
 
 
+@pytest.mark.parametrize("stride", [1, 3])
+def test_of_the_window_is_looked_at_what_may_overlap(stride):
+    """With cells around it, so that no digit depends on how much that is."""
+    heights, approaches = rough(70), np.array([0.02e-6, 0.05e-6])
+    scanned = job(heights, approaches, rtol=4e-6, stride=stride)
+    along, across = scanned.touched(float(heights.max()))
+    assert 0 < across.start < across.stop < 41
+    assert along.start > 0
+    assert (ball()[: along.start + 2] - heights.max() > approaches[-1]).all()
+    space = half_space()
+    planes = np.zeros(scanned.positions)
+    whole = space.solve_block(space.block(heights, ball(), planes, approaches, stride, 4e-6))
+    assert np.array_equal(scan_forces(scanned).forces, whole.totals * space.cell_area)
+    assert scanned.touched(-1e-3) == (slice(0, 1), slice(0, 1))
+
+
 def test_planes_shift_the_approach_of_each_position():
     heights, planes = rough(44), np.array([0.0, 0.1e-6, -0.05e-6, 0.2e-6])
     shifted = scan_forces(job(heights, [0.1e-6], rtol=1e-9, planes=planes)).forces[0]

@@ -79,11 +79,12 @@ class PressedGrid(ElasticGrid):
         if soft is not None:
             softness, drop, flow = map(contiguous, (soft.softness, soft.drop, soft.flow))
             soft = Softness(softness, drop, flow, soft.yielding)
-        k, shape, size = len(approaches), body.shape, (len(approaches), len(planes))
+        k, size = len(approaches), (len(approaches), len(planes))
+        nx, ny = shape = body.shape
         known = self._known[np.float32 if single else np.float64]
         return scanning.Block(
             rows, body, planes, approaches, stride, load, 0.0, self.pressure_cap, rtol, MAX_ITERATIONS,
-            scanning.room(known, *shape, self._sides, soft), np.empty(shape), np.empty(shape),
+            scanning.room(known, nx, ny, self._sides, soft), np.empty(shape), np.empty(shape),
             np.zeros((2, *shape)),
             np.zeros((2, k, *shape)), np.zeros(k, dtype=np.int64), np.zeros(size), np.zeros(size),
             np.zeros(size), np.zeros(4, dtype=np.int64),

@@ -285,7 +285,9 @@ class ScanJob:
             rows, body = rows[beneath, across], body[along, across]
             edges = None if edges is None else edges.rearranged(lambda field: field[beneath, across])
         soft = None if edges is None else space.softness(edges)
-        block = space.block(rows, body, planes, self.approaches, self.stride, self.rtol, self.single, soft=soft)
+        block = space.block(
+            rows, body, planes, self.approaches, self.stride, self.rtol, self.single, soft=soft
+        )
         if self.device is None:
             space.solve_block(block)
         else:
