@@ -4,6 +4,7 @@ import math
 from collections.abc import Hashable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from itertools import groupby
 from typing import NamedTuple
 
 import numpy as np
@@ -154,17 +155,14 @@ class RangeOfBands:
         _, weight = _across_waves()
         blocks, lines = _blocks_across(first, len(middle), z)
         found = np.zeros((len(middle), lines), np.complex128)
-        size = np.sqrt(0.5 * weight)
-        noises = {
-            side: size * deviates(self.surface.seed, (len(middle), len(size)), self.number, side, tile)
-            for side in sorted({each.side for each in blocks})
-        }
-        missing = middle - noises[0].sum(axis=1, keepdims=True)
-        for block in blocks:
-            part = found[block.waves, block.lines]
-            part += noises[block.side][block.waves] @ block.basis
-            if block.side == 0:
-                part += block.coherence * missing[block.waves]
+        for side, of_side in groupby(blocks, lambda each: each.side):
+            noise = deviates(self.surface.seed, (len(middle), len(weight)), self.number, side, tile)
+            missing = middle - noise @ np.sqrt(0.5 * weight)[:, None] if side == 0 else None
+            for block in of_side:
+                part = found[block.waves, block.lines]
+                part += noise[block.waves] @ block.basis
+                if missing is not None:
+                    part += block.coherence * missing[block.waves]
         return found
 
 
@@ -221,7 +219,7 @@ class _Block(NamedTuple):
     waves: slice
     side: int  # number of the tile
     lines: slice
-    basis: Waves  # exp(i u z) (j, ny)
+    basis: Waves  # exp(i u z) (j, ny), times the size of a part of each wave
     coherence: Array  # with the middle of the tile
 
 
@@ -248,8 +246,9 @@ def _made_blocks(first: int, count: int, z: bytes) -> tuple[list[_Block], int]:
                 continue
             basis = _across_basis(distance[lines])
             share = tiling.weight(side, distance[lines])
-            blocks.append(_Block(waves, side, lines, basis * share, share * (weight @ basis.real)))
-    return blocks, len(near)
+            size = np.sqrt(0.5 * weight)[:, None]
+            blocks.append(_Block(waves, side, lines, size * basis * share, share * (weight @ basis.real)))
+    return sorted(blocks, key=lambda each: each.side), len(near)
 
 
 def from_bands(n: int, spacing: float, wavelengths: ArrayLike, levels_db: ArrayLike, seed: int) -> Profile:
