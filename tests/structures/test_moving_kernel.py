@@ -222,8 +222,8 @@ def test_a_kernel_that_has_not_died_away_is_told(monkeypatch):
 
 def test_a_length_in_which_a_rail_rings_on_is_left_after_two_of_its_rows(monkeypatch):
     """Of 0.12 s, for 0.19 s; one that dies away in the first has all rows of it, each once."""
-    asked, row = [], _Begun.row
-    monkeypatch.setattr(_Begun, "row", lambda begun, start: asked.append(start) or row(begun, start))
+    asked, felt = [], _Begun.felt
+    monkeypatch.setattr(_Begun, "felt", lambda begun, start: asked.append(start) or felt(begun, start))
     monkeypatch.setattr("asperity.structures.moving_kernel.thread_count", lambda: 1)
     found = moving_kernel(VISCOUS, 56.0, 2e-4)
     assert found.weights.shape == (24, 960)

@@ -3,11 +3,12 @@
 import threading
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from scipy import fft
 
-from asperity.arguments import Array, Complex, not_negative, positive, real, shown, whole
+from asperity.arguments import Array, Complex, Integers, not_negative, positive, real, shown, whole
 from asperity.errors import CoarseSamplingWarning, InputError, percent
 from asperity.progress import Progress
 from asperity.store import Store, content_key, made
@@ -215,27 +216,30 @@ def _weights(
     None where more than `most` is left over of those above a sleeper and amid a bay, of bays that are alike.
     """
     taps = near.taps
-    time_step = near.time_step
     track = near.track
-    way = _Way(near, HatResponse(track, time_step, taps, 1), speed, positions, distance)
+    way = _Way(near, HatResponse(track, near.time_step, taps, 1), speed, positions, distance)
     weights = np.zeros((track.cell_bays * positions, taps))
     shapes: Shapes = {}
-    told = f"moving kernel of {engineering(taps * time_step, 's', 2)}"
-    first = [0, positions // 2]
-    starts = list(dict.fromkeys([*first, *range(positions)]))
+    told = f"moving kernel of {engineering(taps * near.time_step, 's', 2)}"
+    starts = list(dict.fromkeys([*way.first, *range(positions)]))
+    felt = np.empty((positions, len(BESIDE), taps))
     with ThreadPoolExecutor(thread_count()) as pool:
         for own in range(track.cell_bays):
             begun = _Begun(way, own, shapes)
             shapes = begun.shapes  # of bays that are passed again
-            for done, (start, found) in enumerate(zip(starts, pool.map(begun.row, starts), strict=True), 1):
-                weights[own * positions + start] = found
-                if done == len(first) and not track.bays and _left_over(weights[first]) > most:
+            for done, (start, found) in enumerate(zip(starts, pool.map(begun.felt, starts), strict=True), 1):
+                felt[start] = found
+                if done == len(way.first) and not track.bays and way.left_over(felt) > most:
                     return None  # rows that have not begun are not computed
                 if progress is not None:
                     progress(own * positions + done, len(weights), told)
+            for start in starts:
+                weights[own * positions + start] = way.row(start, felt)
     return weights
 
 
+BESIDE = np.arange(-1, 3)[:, None]
+"""Nodes beside a contact, from the one behind it or under it on, between which responses are a cubic."""
 Shapes = dict[tuple[HatResponse, int], tuple[Complex, Complex]]
 """Shapes of waves outwards and inwards, two of (positions, 2, f), on a grid of frequencies in a bay."""
 
@@ -261,6 +265,11 @@ class _Way:
         """Whether the displacement is that under the force, on a track that is symmetric about a sleeper."""
         return not (self.distance or self.near.track.bays)
 
+    @property
+    def first(self) -> tuple[int, ...]:
+        """Starts above a sleeper and amid a bay."""
+        return tuple(dict.fromkeys((0, self.positions // 2)))
+
     def grid(self, bay: int) -> HatResponse:
         """Frequencies on which the receptance of a bay is taken, counted from that of the force."""
         return self.near if bay in (-1, 0) else self.far
@@ -274,10 +283,41 @@ class _Way:
         end = int(ahead + self.positions + steps) + 2
         return range(begin // self.positions, end // self.positions + 1)
 
-    def places(self, start: int) -> Array:
-        """Places (taps,) at all steps from a start on."""
+    @cached_property
+    def at(self) -> Array:
+        """Places (taps,) at all steps, from the start on."""
         step = self.speed * self.near.time_step / self.spacing
-        return np.asarray(start + self.distance / self.spacing + np.arange(self.near.taps) * step)
+        return np.asarray(self.distance / self.spacing + np.arange(self.near.taps) * step)
+
+    @cached_property
+    def base(self) -> Integers:
+        """The nodes (taps,) before these places, or there."""
+        return np.floor(self.at).astype(int)
+
+    @cached_property
+    def cubic(self) -> Array:
+        """Weights (4, taps) of the nodes beside these places, and the growth of what the window took."""
+        return lagrange_weights(self.at - self.base) * self.far.growth
+
+    def last(self, start: int) -> int:
+        """Last node of each bay whose response is computed for a start.
+
+        In bays that are alike G(bP + n|s) = G(bP + P − s|P − n), mirrored about the middle between both and
+        by reciprocity, and the contact is at both at the same lag: the start P − n has it.
+        """
+        alike = not self.near.track.bays and start not in self.first
+        return self.positions - start if alike else self.positions
+
+    def row(self, start: int, felt: Array) -> Array:
+        """Row (taps,) of the kernel from a start on, by what was `felt` from all (positions, 4, taps)."""
+        node = (start + self.base + BESIDE) % self.positions
+        by = np.where(node > self.last(start), self.positions - node, start)
+        found = np.take_along_axis(felt, by[None], axis=0)[0]
+        return np.asarray(np.sum(self.cubic * found, axis=0))
+
+    def left_over(self, felt: Array) -> float:
+        """What is left over of the first rows, as of a kernel."""
+        return _left_over(np.array([self.row(start, felt) for start in self.first]))
 
 
 class _Begun:
@@ -285,7 +325,6 @@ class _Begun:
 
     def __init__(self, way: _Way, own: int, known: Shapes) -> None:
         track = way.near.track
-        nodes = np.linspace(0.0, track.sleeper_spacing, way.positions + 1)
         self.way = way
         self.own = own
         self.bays = track.cell_bays
@@ -295,31 +334,32 @@ class _Begun:
             grid = way.grid(bay)
             needed.add((grid, (own + bay) % self.bays))
             self.amplitudes[bay] = grid.hat * grid.waves.coefficients * grid.waves.carried(own, own + bay)
-        self.shapes = {each: known.get(each) or _shapes(*each, nodes) for each in needed}
-        self.growth = way.far.growth
+        self.shapes = {each: known.get(each) or _shapes(*each, way.positions) for each in needed}
 
-    def row(self, start: int) -> Array:
-        """Row (taps,) of the kernel from a start on: bay by bay, between the nodes by a cubic."""
+    def felt(self, start: int) -> Array:
+        """Responses (4, taps) at the nodes beside the contact at each lag, before they have grown.
+
+        From a start on, bay by bay; zero where the start is not `_Way.last` to have them.
+        """
         way = self.way
-        positions = self.way.positions
-        at = way.places(start)
-        base = np.floor(at).astype(int)
-        cubic = lagrange_weights(at - base)
-        result = np.zeros(way.near.taps)
+        positions = way.positions
+        base = start + way.base
+        result = np.zeros((len(BESIDE), way.near.taps))
         first = 0 if way.mirrored else int(base[0] - 1) // positions
         for bay in range(first, int(base[-1] + 2) // positions + 1):
             low = 0 if way.mirrored else max(int(base[0]) - 1 - bay * positions, 0)
-            high = min(int(base[-1]) + 3 - bay * positions, positions)  # others are not passed
+            # others are not passed, or known of another start
+            high = min(int(base[-1]) + 3 - bay * positions, positions, way.last(start) + 1)
+            if low >= high:
+                continue
             response = self._response(start, bay, low, high)
             passed = slice(*np.searchsorted(base, [bay * positions - 2, (bay + 1) * positions + 1]))
-            lags = np.arange(passed.start, passed.stop)
-            for weight, offset in zip(cubic[:, passed], range(-1, 3), strict=True):
-                node = base[passed] + offset - bay * positions
-                if bay == 0 and start == 0 and way.mirrored:
-                    node = np.abs(node)
-                found = (node >= low) & (node < high)
-                within = lags[found]
-                result[within] += weight[found] * (response[node[found] - low, within] * self.growth[within])
+            node = base[passed] + BESIDE - bay * positions
+            if bay == 0 and start == 0 and way.mirrored:
+                node = np.abs(node)
+            beside, lag = np.nonzero((node >= low) & (node < high))
+            lags = lag + passed.start
+            result[beside, lags] = response[node[beside, lag] - low, lags]
         return result
 
     def _response(self, start: int, bay: int, low: int, high: int) -> Array:
@@ -344,9 +384,9 @@ class _Begun:
         return rooms.both
 
 
-def _shapes(grid: HatResponse, bay: int, nodes: Array) -> tuple[Complex, Complex]:
-    """Shapes of the waves at all nodes of a bay but the last, two of (positions, 2, f)."""
-    outgoing, incoming = grid.waves.bay(bay).symmetric_shapes(nodes)
+def _shapes(grid: HatResponse, bay: int, count: int) -> tuple[Complex, Complex]:
+    """Shapes of the waves at so many nodes of a bay, two of (count, 2, f)."""
+    outgoing, incoming = grid.waves.bay(bay).shapes_at_nodes(count)
     return outgoing[:-1], incoming[:-1]
 
 
