@@ -186,8 +186,12 @@ def test_a_point_moves_with_the_contact_when_it_is_passed(kernel):
 
 
 @pytest.mark.parametrize("course", [([0.0, 0.16], [16.0, 20.0]), ([0.1, 0.16], [20.0, 16.0])])
-def test_a_rail_moves_as_by_superposition_at_fixed_points_while_the_speed_changes(kept, course):
-    """Under wheels 2.5 m apart at 25 to 67 m/s²: kernels of constant speeds, beside those of no speed."""
+def test_a_rail_moves_as_by_superposition_at_fixed_points_while_the_speed_changes(kept, course, monkeypatch):
+    """Under wheels 2.5 m apart at 25 to 67 m/s²: kernels of constant speeds, beside those of no speed.
+
+    Poles miss kernels of 0.12 s by what is left over of these, up to 4e-4; within 0.2 s that has died away.
+    """
+    monkeypatch.setattr("asperity.structures.moving_kernel.SHORTEST", 0.2)
     speed, places, h = SpeedCourse(*course), np.array([0.0, 2.5]), 2.0 * STEP
     rail = rail_at(TRACK, speed, h, places, cache=kept)
     laws = [linear(roughness(1.2))] * 2
