@@ -33,7 +33,7 @@ from numpy.polynomial import chebyshev
 from scipy import fft
 from scipy.special import i0e
 
-from asperity.arguments import Array, Complex, NDArray
+from asperity.arguments import Array, Complex
 
 RANGE = 10.0**0.6
 """Ratio of the longest wave of a range to its shortest: six one-third octaves."""
@@ -71,26 +71,17 @@ def _key(seed: int) -> tuple[int, int]:
     return int(first), int(second)
 
 
-def _counted(seed: int, *place: int) -> tuple[NDArray[np.uint64], NDArray[np.uint64]]:
-    """Key (2,) and counter (4,) of Philox, from where the random numbers of a place are counted."""
-    counter = np.zeros(4, np.int64)
-    counter[1 : 1 + len(place)] = place
-    return np.array(_key(seed), np.uint64), counter.view(np.uint64)
-
-
 def random_of(seed: int, *place: int) -> np.random.Generator:
     """Random numbers of a seed and a place, at most three whole numbers, negative ones too."""
-    key, counter = _counted(seed, *place)
-    return np.random.Generator(np.random.Philox(key=key, counter=counter))
+    counter = np.zeros(4, np.int64)
+    counter[1 : 1 + len(place)] = place
+    key = np.array(_key(seed), np.uint64)
+    return np.random.Generator(np.random.Philox(key=key, counter=counter.view(np.uint64)))
 
 
 def deviates(seed: int, shape: tuple[int, ...], *place: int) -> Waves:
     """Complex numbers whose parts are standard normal; a larger first axis begins with the smaller one."""
-    from asperity.kernels.normal import WORDS, boxes, normal_deviates
-
-    found = np.empty((*shape, 2))
-    normal_deviates(*_counted(seed, *place), np.empty(WORDS, np.uint64), *boxes(), found.reshape(-1))
-    return found.view(np.complex128)[..., 0]
+    return random_of(seed, *place).standard_normal((*shape, 2)).view(np.complex128)[..., 0]
 
 
 @dataclass(frozen=True)
