@@ -5,16 +5,23 @@ import tracemalloc
 import numpy as np
 
 
-def times_of_file(path, evaluate):
-    """Bytes of memory a byte of a file of single digits: what a longer one takes more than a shorter."""
+def single_digits(path, samples):
+    """Write a column of them."""
+    path.write_text("\n".join(map(str, np.abs(samples) % 10)) + "\n")
+
+
+def times_of_file(path, write, evaluate):
+    """Bytes of memory a byte of a file of whole numbers of two bytes: what a longer one takes more than a
+    shorter."""
     peaks = []
+    sizes = []
     for count in (20_000, 100_000, 300_000):  # the first for imports
-        digits = np.random.default_rng(0).integers(0, 10, count)
-        path.write_text("\n".join(map(str, digits)) + "\n")
+        write(path, np.random.default_rng(0).integers(-9_999, 10_000, count, dtype=np.int16))
+        sizes.append(path.stat().st_size)
         tracemalloc.start()
         try:
             evaluate()
             peaks.append(tracemalloc.get_traced_memory()[1])
         finally:
             tracemalloc.stop()
-    return (peaks[2] - peaks[1]) / (2 * 200_000)
+    return (peaks[2] - peaks[1]) / (sizes[2] - sizes[1])

@@ -164,8 +164,26 @@ def two_lengths(what: str, value: object) -> tuple[float, float]:
     return dx, dy
 
 
+SMALL = 4  # bytes of a number at most that float64 has to the last bit, whatever its type
+
+
+def kept_small(array: NDArray[Any]) -> NDArray[Any]:
+    """Real numbers as they are where their type is a small one, else as float64."""
+    return array if array.dtype.itemsize <= SMALL else np.asarray(array, dtype=np.float64)
+
+
+def floats(values: NDArray[Any]) -> NDArray[np.float64]:
+    """Real numbers as float64: whole numbers of few bytes would overflow, and small floats round."""
+    return np.asarray(values, dtype=np.float64)
+
+
 def real_array(what: str, values: object, allowed: str) -> NDArray[np.float64]:
     """Take a contiguous array of real numbers from all that numpy makes one of; masked points become NaN."""
+    return np.asarray(real_numbers(what, values, allowed), dtype=np.float64, order="C")
+
+
+def real_numbers(what: str, values: object, allowed: str) -> NDArray[Any]:
+    """Take real numbers of any type, as `real_array` does."""
     if isinstance(values, np.ma.MaskedArray):
         values = np.ma.filled(values.astype(np.float64), np.nan)
     try:
@@ -175,7 +193,7 @@ def real_array(what: str, values: object, allowed: str) -> NDArray[np.float64]:
     if array.dtype.kind not in "fiu":
         received = shown(values) if array.ndim == 0 else f"data of type {array.dtype}"
         raise InputError(what, received, allowed)
-    return np.asarray(array, dtype=np.float64, order="C")
+    return array
 
 
 def finite_array(

@@ -47,7 +47,15 @@ class GrowingNumbers:
     def poured(self) -> Array:
         """All of them (n,), which are here no more: they are never held twice."""
         self._close()
-        poured = np.empty(self._count)
+        return self._into(np.empty(self._count))
+
+    def kept_small(self) -> NDArray[Any]:
+        """All of them (n,), as `poured`, in the smallest type that has each of them."""
+        self._close()
+        kinds = {block.dtype for block in self._blocks} or {np.dtype(np.float64)}
+        return self._into(np.empty(self._count, np.result_type(*kinds)))
+
+    def _into(self, poured: NDArray[Any]) -> NDArray[Any]:
         while self._blocks:
             block = self._blocks.pop()
             poured[self._count - block.size : self._count] = block

@@ -1,10 +1,11 @@
 """Values in rising order, of which few are put in order at a time: they are not held twice."""
 
 from collections.abc import Iterable, Iterator, Sequence
+from typing import Any
 
 import numpy as np
 
-from asperity.arguments import Array, Flags, Indices
+from asperity.arguments import Array, Flags, Indices, NDArray, floats
 
 TOGETHER = 2**19
 """Values that are put in order together."""
@@ -14,12 +15,12 @@ HELD = 4
 """Parts in order that are kept: the ends of two stretches that are looked at together."""
 
 
-def known_pieces(arrays: Iterable[Array]) -> Iterator[Array]:
+def known_pieces(arrays: Iterable[NDArray[Any]]) -> Iterator[Array]:
     """Values of arrays of any shape that are known, piece by piece; NaN stands for those that are not."""
     for values in arrays:
         flat = values.reshape(-1) if values.ndim == 1 else values.ravel(order="K")
         for first in range(0, flat.size, TOGETHER):
-            piece = flat[first : first + TOGETHER]
+            piece = floats(flat[first : first + TOGETHER])
             known = np.isfinite(piece)
             yield piece if known.all() else piece[known]
 
@@ -43,7 +44,7 @@ class Ranked:
         Of them.
     """
 
-    def __init__(self, arrays: Sequence[Array]) -> None:
+    def __init__(self, arrays: Sequence[NDArray[Any]]) -> None:
         self._arrays = arrays
         ends = [(piece.min(), piece.max(), piece.size) for piece in self.pieces() if piece.size]
         self.count = sum(size for _, _, size in ends)

@@ -10,16 +10,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.io import wavfile
+from scipy.io import savemat, wavfile
 
 import asperity
 from asperity.case.ball_bearing import BearingUnderLoad
 from asperity.case.cases import as_case
 from asperity.case.loaded_bearing import read_bearing
 from asperity.studies import running
+from asperity.wave_files import wave_bytes
 from command_line import call, words_of
 from faulty_signals import faulty_signal
-from memory_of_files import times_of_file
+from memory_of_files import single_digits, times_of_file
 from small_cases import BEARING
 
 RATE = 12_000
@@ -443,12 +444,31 @@ def test_a_bearing_is_made_finer_and_asked_what_helps_by_command(monkeypatch):
     assert "half as wavy" in page
 
 
-def test_a_signal_of_single_digits_takes_five_times_its_file(monkeypatch):
-    """Eight bytes a number as a sample, and two beside it: what the larger of two files takes more than the
-    other."""
+def waves(file, samples):
+    wavfile.write(file, RATE, samples)
+
+
+def waves_with_a_unit(file, samples):
+    file.write_bytes(wave_bytes(samples / 3_276.7, RATE, 10.0, "m/s2"))
+
+
+@pytest.mark.parametrize(
+    ("name", "write", "most"),
+    [
+        ("digits.txt", single_digits, 1.6),  # the text as bytes and as letters, before there is a number
+        ("a.npy", np.save, 1.6),
+        ("a.npz", lambda file, samples: np.savez(file, signal=samples), 1.6),
+        ("a.mat", lambda file, samples: savemat(file, {"signal": samples}), 1.6),
+        ("a.wav", waves, 2.6),  # as shares of full scale
+        ("a.wav", waves_with_a_unit, 4.6),  # as numbers of eight bytes, in the unit
+    ],
+)
+def test_a_signal_of_few_bytes_a_sample_takes_few_times_its_file(name, write, most, monkeypatch):
+    """What the larger of two files takes more than the other."""
     monkeypatch.setattr("asperity.ranks.TOGETHER", 2**12)
     monkeypatch.setattr("asperity.diagnostics.decision.ENOUGH", 3.0)
     for module in ("decision", "recording"):
         monkeypatch.setattr(f"asperity.diagnostics.{module}.MOST_SAMPLES", 2**12)
-    asked = ("bearing", "6205", "--speed", "1797 1/min", "--signal", "digits.txt", "--rate", "12 kHz")
-    assert times_of_file(Path("digits.txt"), lambda: call(*asked)) < 5.0
+    rate = () if name.endswith("wav") else ("--rate", "12 kHz")
+    asked = ("bearing", "6205", "--speed", "1797 1/min", "--signal", name, *rate)
+    assert times_of_file(Path(name), write, lambda: call(*asked)) < most

@@ -14,7 +14,7 @@ import pytest
 
 from asperity.surfaces.readers import read_surface
 from command_line import call, words_of
-from memory_of_files import times_of_file
+from memory_of_files import single_digits, times_of_file
 
 HINTS = ("--height-unit", "um", "--pixel", "2 um")
 
@@ -204,9 +204,26 @@ def test_a_column_of_single_digits_takes_five_times_its_file(monkeypatch):
     module = importlib.import_module("asperity.cli.surface")
     file = Path("column.txt")
     times = times_of_file(
-        file, lambda: module.show_surface(file, Path("a.png"), height_unit="nm", pixel="1 um")
+        file, single_digits, lambda: module.show_surface(file, Path("a.png"), height_unit="nm", pixel="1 um")
     )
     assert times < 5.0
+
+
+def test_lines_are_gone_when_they_are_drawn(monkeypatch):
+    """What draws takes as much memory as four million heights."""
+    module = importlib.import_module("asperity.cli.surface")
+    held = []
+    monkeypatch.setattr(module, "write_chart", lambda *_: held.append(tracemalloc.get_traced_memory()[0]))
+    count = 200_000
+    single_digits(Path("column.txt"), np.arange(count))
+    for psd in (False, False, True):  # the first for imports
+        tracemalloc.start()
+        try:
+            module.show_surface(Path("column.txt"), Path("a.png"), psd=psd, height_unit="nm", pixel="1 um")
+        finally:
+            tracemalloc.stop()
+    assert held[1] < 0.25 * 8 * count
+    assert held[2] > held[1] + 0.9 * 8 * count  # the spectrum, where it is written to a file
 
 
 @pytest.mark.parametrize("columns", [1, 4])

@@ -94,7 +94,9 @@ def _typed(recipe: Path | None, options: dict[str, Any]) -> dict[str, Any]:
     return recipes.typed_recipe(recipe) | given
 
 
-def _levelled(file: Path, steps: recipes.Recipe, title: str) -> tuple[Surfaces, dict[str, Any]]:
+def _levelled(
+    file: Path, steps: recipes.Recipe, title: str
+) -> tuple[list[HeightMap | Profile], dict[str, Any]]:
     """Read a file, say what it holds, and return its lines or its first map, levelled, and sizes of all.
 
     Heights as they were read are kept no longer: evaluations take no more memory than they need.
@@ -133,11 +135,17 @@ def _side_by_side(surfaces: Surfaces, wanted: bool | None) -> tuple[Profile, ...
 
 
 def _show(
-    levelled: Surfaces, count: int, title: str, picture: Path, steps: recipes.Recipe, psd: bool
+    levelled: list[HeightMap | Profile],
+    count: int,
+    title: str,
+    picture: Path,
+    steps: recipes.Recipe,
+    psd: bool,
 ) -> tuple[dict[str, Any], Spectra]:
     """Print what is in lines, or in the first of a count of maps, and draw it; return numbers and spectra.
 
-    With the areal one of a map where spectra are asked for.
+    Spectra where they are asked for, with the areal one of a map. Lines are gone when they are drawn: what
+    draws takes room.
     """
     first = levelled[0]
     lines = [each for each in levelled if isinstance(each, Profile)]
@@ -156,10 +164,15 @@ def _show(
         spectra = _spectra_of_lines(lines)
         items = statistics.line_statistics(lines, band, section)
         chart = lines_chart([line.heights for line in lines], first.spacing, spectra)
+    if not psd:
+        spectra = {}  # they are drawn, and as long as the line
     ratio = _material_ratio([each.heights for each in lines or levelled[:1]])
     octaves = _third_octaves(lines)  # last of all: lines are processed where they stand
     if octaves is not None:
         chart = with_octaves(chart, octaves)
+    of_map = first if isinstance(first, HeightMap) else None
+    del first, lines
+    levelled.clear()
     lead = "Each line levelled" if beside else "Levelled"
     waves = _band(items[0][0])
     say(f"{lead}; wavelengths {waves}{'; mean (lowest to highest of a line)' * beside}:")
@@ -169,10 +182,10 @@ def _show(
     unknown = [item.symbol for item, *_ in items if math.isnan(item.value)]
     if slopes := [symbol for symbol in unknown if symbol[1:] in ("dq", "dr")]:
         say(f"No {' and no '.join(slopes)}: slopes by ISO 4287 take {SLOPE_POINTS} points in a row.")
-    homogeneous = _homogeneity(first)
+    homogeneous = None if of_map is None else _homogeneity(of_map)
     write_chart(chart, title, picture)
-    if isinstance(first, HeightMap) and spectra and psd:
-        spectra[AREAL] = psd_radial(cleaning.nearly_complete(first) or first)
+    if of_map is not None and spectra:
+        spectra[AREAL] = psd_radial(cleaning.nearly_complete(of_map) or of_map)
     rows = [asdict(item) | ({"lowest": low, "highest": high} if beside else {}) for item, low, high in items]
     told = {"statistics": rows, "homogeneity": homogeneous, "material_ratio": ratio}
     return told | {"third_octaves": _limited(octaves)}, spectra
@@ -292,9 +305,9 @@ def _scaled(item: statistics.Statistic) -> str:
     return f"{rounded(item.value * 1e6, 4)} µm" if item.unit == "m" else rounded(item.value, 4)
 
 
-def _homogeneity(surface: HeightMap | Profile) -> dict[str, Any] | None:
-    """Print whether the texture of a map is the same everywhere; return its numbers, none of a line."""
-    if not isinstance(surface, HeightMap) or min(surface.shape) < 2 * max(statistics.TILES):
+def _homogeneity(surface: HeightMap) -> dict[str, Any] | None:
+    """Print whether the texture of a map is the same everywhere; return its numbers, none of a small one."""
+    if min(surface.shape) < 2 * max(statistics.TILES):
         return None
     whole = cleaning.nearly_complete(surface)
     what = "Homogeneity, Std and spectra are those of"

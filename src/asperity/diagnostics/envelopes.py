@@ -45,22 +45,35 @@ def amplitude_spectrum(signal: ArrayLike, rate: float) -> Spectrum:
         Hz, at half the step that the record resolves, and in the unit of the signal: a sine of amplitude A
         has A at its frequency, less at most 4 % between two places.
     """
+    amplitude, step = _amplitudes(signal, rate)
+    return _places(amplitude, step), amplitude
+
+
+def _places(amplitude: Array, step: float) -> Array:
+    """Frequencies (f,), Hz, of lines at a step."""
+    frequency = np.arange(float(amplitude.size))
+    frequency *= step
+    return frequency
+
+
+def _amplitudes(signal: ArrayLike, rate: float) -> tuple[Array, float]:
+    """Amplitudes (f,) of `amplitude_spectrum`, and the step between them, Hz."""
     from scipy.fft import next_fast_len, rfft
 
     values, rate = checked_signal(signal, rate)
     size = next_fast_len(2 * values.size, real=True)
     window = hann_window(values.size, centred=True)
     weight = window.sum()
-    window *= values  # in place, here and below: records may be as long as memory allows
-    del values
-    lines = rfft(window, size)
-    del window
+    padded = np.zeros(size)
+    np.multiply(window, values, out=padded[: values.size])
+    del window, values  # here and below: records may be as long as memory allows
+    lines = rfft(padded, overwrite_x=True)
+    del padded
     amplitude = np.abs(lines)
     del lines
     amplitude *= 2.0
     amplitude /= weight
-    frequency = np.arange(float(amplitude.size)) * (rate / size)
-    return frequency, np.asarray(amplitude, dtype=np.float64)
+    return np.asarray(amplitude, dtype=np.float64), rate / size
 
 
 def mean_spectrum(signals: Iterable[tuple[Array, float]], rate: float) -> tuple[Spectrum, float]:
@@ -82,20 +95,23 @@ def mean_spectrum(signals: Iterable[tuple[Array, float]], rate: float) -> tuple[
     level : float
         The mean level.
     """
-    frequency = np.zeros(0)
-    power = np.zeros(())
+    step = 0.0
+    power = np.zeros(0)
     levels = list[float]()
     for signal, level in signals:
         levels.append(level)
-        frequency, amplitude = amplitude_spectrum(signal, rate)
+        amplitude, step = _amplitudes(signal, rate)
         amplitude *= levels[0] / level
         amplitude *= amplitude
-        power = amplitude + power
+        if power.size:
+            amplitude += power
+        power = amplitude
+        del signal, amplitude  # not held beside the next one
     mean = float(np.mean(levels))
     power /= len(levels)
     np.sqrt(power, out=power)
     power *= mean / levels[0]
-    return (frequency, power), mean
+    return (_places(power, step), power), mean
 
 
 def envelope_spectrum(signal: ArrayLike, rate: float, band: tuple[float, float] | None = None) -> Spectrum:

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from asperity.arguments import Array
-from asperity.diagnostics.missing_samples import BLOCK, Mask, Runs, joined, runs_of
+from asperity.arguments import Array, floats
+from asperity.diagnostics.missing_samples import BLOCK, Mask, Runs, Samples, joined, runs_of
 
 ORDER = 11
 """Samples from which the next one is foretold: two for each of five tones, and one for the mean."""
@@ -19,7 +19,7 @@ FAINTER = 20.0
 did."""
 
 
-def unforetold(values: Array, most: float) -> Runs:
+def unforetold(values: Samples, most: float) -> Runs:
     """First place of each stretch of a signal (n,) that its tones do not foretell, and that behind its last.
 
     None of a signal that more than a few tones make, nor where there are more than so many: those are blows.
@@ -31,7 +31,9 @@ def unforetold(values: Array, most: float) -> Runs:
         return joined([])
 
     def unlike(times: float) -> Iterator[Mask]:
-        parts = (values[first : first + BLOCK + ORDER] for first in range(0, values.size - ORDER, BLOCK))
+        parts = (
+            floats(values[first : first + BLOCK + ORDER]) for first in range(0, values.size - ORDER, BLOCK)
+        )
         return (np.abs(np.convolve(part, weights, "valid")) > times * usual for part in parts)
 
     if not any(each.any() for each in unlike(UNLIKE)):
@@ -40,11 +42,11 @@ def unforetold(values: Array, most: float) -> Runs:
     return stretches if len(stretches) <= most else joined([])
 
 
-def _parts(values: Array) -> Array:
+def _parts(values: Samples) -> Array:
     """Parts of a signal (n,), evenly spread, which overlap by half at most, (parts, samples)."""
     last = max(values.size - PART, 0)
     firsts = np.linspace(0, last, min(PARTS, 1 + 2 * last // PART)).astype(int)
-    return np.array([values[first : first + PART] for first in firsts])
+    return np.array([floats(values[first : first + PART]) for first in firsts])
 
 
 def _foreteller(parts: Array) -> Array:

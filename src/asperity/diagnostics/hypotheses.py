@@ -191,7 +191,7 @@ class BearingRecord:
             return counted(pieces.seen(view, step), len(pieces), what, progress)
 
         plain = ((each, float(each.std())) for each in seen(np.asarray, "spectrum"))
-        spectrum, _ = mean_spectrum(plain, rate / step)
+        spectrum = Prominence.of(mean_spectrum(plain, rate / step)[0], means=len(pieces), highest=highest)
 
         def stands_out(view: Callable[[Array], Array], width: float, name: str) -> Prominence:
             envelopes = seen(view, f"envelope of the {name}")
@@ -199,7 +199,7 @@ class BearingRecord:
 
         return cls(
             duration=pieces.size / rate,
-            spectrum=Prominence.of(spectrum, means=len(pieces), highest=highest),
+            spectrum=spectrum,
             white=stands_out(white, 0.5 * rate, "whitened signal"),
             band=stands_out(ringing, limits[1] - limits[0], "band"),
             kurtogram=kurtogram,

@@ -6,10 +6,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.arguments import Array
+from asperity.arguments import Array, floats
 
 Mask = NDArray[np.bool_]
 Runs = NDArray[np.intp]
+Samples = NDArray[Any]
+"""Of a record (n,), in whatever type they were kept: what is computed of some takes them as floats."""
 
 BLOCK = 2**16
 """Samples that are looked at together: a record is not held beside itself."""
@@ -61,14 +63,14 @@ def blocks(values: NDArray[Any], size: int = BLOCK) -> Iterator[NDArray[Any]]:
     return (values[first : first + size] for first in range(0, values.size, size))
 
 
-def least_step(values: Array) -> float:
+def least_step(values: Samples) -> float:
     """Step of values (n,), in their unit: what those that differ do so by at least."""
-    known = values[:BLOCK]
+    known = floats(values[:BLOCK])
     known = known[np.isfinite(known)]
     return float(np.diff(np.unique(known)).min(initial=np.ptp(known) if known.size else 0.0))
 
 
-def filled_in(values: Array, most: float = np.inf) -> Runs:
+def filled_in(values: Samples, most: float = np.inf) -> Runs:
     """First place of each stretch of a signal (n,) in which nothing was measured, and that behind its last.
 
     There the signal is constant, or on a straight line or a cubic, to within rounding, while on either side
@@ -86,21 +88,21 @@ def filled_in(values: Array, most: float = np.inf) -> Runs:
         for first, last in runs_of(small, IN_A_ROW):
             behind = last + order
             beside = (
-                values[max(first - IN_A_ROW - order, 0) : first],
-                values[behind : behind + IN_A_ROW + order],
+                floats(values[max(first - IN_A_ROW - order, 0) : first]),
+                floats(values[behind : behind + IN_A_ROW + order]),
             )
             clipped = not low + margin < float(np.median(values[first:behind])) < high - margin
             if not clipped and _begins_and_ends(beside, order, ABRUPT * noise):
                 found.append((first, behind))
     stretches = joined(found)
-    middles = values[stretches.mean(axis=1).astype(int)]
+    middles = floats(values[stretches.mean(axis=1).astype(int)])
     alike = [np.count_nonzero(np.abs(middles - each) <= rounding) for each in middles]
     return stretches[np.array(alike, dtype=float) <= most]
 
 
-def _small(values: Array, order: int, most: float) -> Iterator[Mask]:
+def _small(values: Samples, order: int, most: float) -> Iterator[Mask]:
     """Where differences of an order are no larger than so much, piece by piece, (n - order,) in all."""
-    parts = (values[first : first + BLOCK + order] for first in range(0, values.size - order, BLOCK))
+    parts = (floats(values[first : first + BLOCK + order]) for first in range(0, values.size - order, BLOCK))
     return (np.abs(np.diff(part, order)) <= most for part in parts)
 
 

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.arguments import Array
-from asperity.diagnostics.missing_samples import Runs, joined
+from asperity.arguments import Array, floats
+from asperity.diagnostics.missing_samples import Runs, Samples, joined
 from asperity.spectra import psd
 
 DOMINANT = 0.5
@@ -26,7 +26,7 @@ LINE = 3
 """Places of a spectrum by which a line reaches beside its own."""
 
 
-def lost_between(values: Array, turn: float) -> Runs:
+def lost_between(values: Samples, turn: float) -> Runs:
     """Where samples of a signal (n,) were left out: first places, and those behind the last.
 
     There the phase of the loudest tone jumps and stays; that tone needs half of the mean square or more, and
@@ -38,12 +38,14 @@ def lost_between(values: Array, turn: float) -> Runs:
         return joined([])
     window = round(np.ceil(LEAST_WINDOW * tone) / tone)
     firsts = range(0, max(values.size - 4 * window, 0), LONGEST)
-    found = [first + _jumps(values[first : first + LONGEST + 4 * window], tone, window) for first in firsts]
+    found = [
+        first + _jumps(floats(values[first : first + LONGEST + 4 * window]), tone, window) for first in firsts
+    ]
     wide = max(window // 8, 2)
     return joined([(at - wide, at + wide) for each in found for at in each])
 
 
-def _dominant(values: Array, turn: float) -> float:
+def _dominant(values: Samples, turn: float) -> float:
     """Frequency of a tone that has half of the mean square of a signal (n,), cycles a sample; 0 for none."""
     size = min(max(SEGMENT, int(TURNS * turn)), LONGEST, values.size)
     firsts = np.unique(np.linspace(0, values.size - size, SEGMENTS).astype(int))

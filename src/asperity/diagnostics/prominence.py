@@ -16,6 +16,8 @@ LOWEST_PLACE = 3
 """Of a spectrum: below, the window spreads the mean."""
 PER_STEP = 3
 """Fundamentals that are tried in the width by which the last harmonic may be beside its place."""
+TOGETHER = 2**14
+"""Fundamentals that are looked at together: of long records there are millions."""
 CANDIDATES = 5
 """Combs that are looked at, the clearest first."""
 BESIDE = 2
@@ -204,13 +206,18 @@ class Prominence:
         """How clear the clearest deep comb with a fundamental in a range is, 0 for none, and its fundamental,
         Hz."""
         count = int(np.ceil((high - low) / self.step * HARMONICS / WITHIN * PER_STEP)) + 2
-        fundamental = np.linspace(low, high, count)
-        clear = self.combs(fundamental)
+        step = (high - low) / (count - 1)
+        parts = (
+            low + step * np.arange(first, min(first + TOGETHER, count), dtype=np.float64)
+            for first in range(0, count, TOGETHER)
+        )
+        there = [(part[clear > 0.0], clear[clear > 0.0]) for part in parts for clear in (self.combs(part),)]
+        fundamental, clear = (np.concatenate(each) for each in zip(*there, strict=True))
         found: list[tuple[float, float, float]] = []
         for _ in range(CANDIDATES):
-            at = int(np.argmax(clear))
-            if not clear[at]:
+            if not clear.any():
                 break
+            at = int(np.argmax(clear))
             clear[np.abs(fundamental - fundamental[at]) <= 2 * LOWEST_PLACE * self.step] = 0.0
             true = self.refined(self.true_fundamental(self.refined(float(fundamental[at]))))
             likeness = float(self.combs(np.array([true]), 1.0)[0])

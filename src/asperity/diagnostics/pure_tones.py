@@ -4,8 +4,8 @@ whose envelope is their beat."""
 import numpy as np
 from scipy.fft import rfft
 
-from asperity.arguments import Array
-from asperity.diagnostics.missing_samples import BLOCK, least_step
+from asperity.arguments import Array, floats
+from asperity.diagnostics.missing_samples import BLOCK, Samples, least_step
 from asperity.spectra import hann_window
 
 MOST_TONES = 8
@@ -31,7 +31,7 @@ LEAST_STEP = 2e-6
 """Of the rms of a record: no sensor and no converter resolves so little beside what it measures."""
 
 
-def tones_alone(signal: Array, rate: float, *, clipped: bool = False) -> tuple[float, ...]:
+def tones_alone(signal: Samples, rate: float, *, clipped: bool = False) -> tuple[float, ...]:
     """Frequencies of all the tones that a signal (n,) holds, Hz, the loudest first; none of one that holds
     more.
 
@@ -40,7 +40,7 @@ def tones_alone(signal: Array, rate: float, *, clipped: bool = False) -> tuple[f
     its mean square lies in eight lines: a train of blows without noise has more. Of a clipped one what lies
     beside them is what clipping makes of them, folded at half the sampling rate.
     """
-    values = signal[:BLOCK]
+    values = floats(signal[:BLOCK])
     power = _lines(values)
     parts = np.array_split(power, min(max(power.size // WIDE, 1), BLOCKS))
     noise = np.sqrt(max(np.median(part) for part in parts) / np.log(2.0))
@@ -50,12 +50,12 @@ def tones_alone(signal: Array, rate: float, *, clipped: bool = False) -> tuple[f
     return tuple(at * rate / values.size for at in places) if left <= SHARE else ()
 
 
-def beat(signal: Array, rate: float, band: tuple[float, float]) -> bool:
+def beat(signal: Samples, rate: float, band: tuple[float, float]) -> bool:
     """Whether a few tones make a band of a signal (n,), as of a gear: its envelope is their beat, no blow.
 
     Blows have a line at each of their multiples, as far as what rings reaches.
     """
-    values = signal[:BLOCK]
+    values = floats(signal[:BLOCK])
     first, last = (int(edge * values.size / rate) for edge in band)
     return _loudest(_lines(values)[first : last + 1], FEW_TONES)[1] <= 1.0 - BEATS
 

@@ -6,9 +6,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, positive, real_array, require
+from asperity.arguments import Array, ArrayLike, floats, kept_small, positive, real_numbers, require
 from asperity.diagnostics.foretold import unforetold
-from asperity.diagnostics.missing_samples import BLOCK, Mask, Runs, blocks, filled_in, runs, runs_of
+from asperity.diagnostics.missing_samples import (
+    BLOCK,
+    Mask,
+    Runs,
+    Samples,
+    blocks,
+    filled_in,
+    runs,
+    runs_of,
+)
 from asperity.diagnostics.phase_jumps import lost_between
 from asperity.diagnostics.pure_tones import beat, tones_alone
 from asperity.ranks import Ranked
@@ -54,7 +63,7 @@ class Recording:
     Attributes
     ----------
     stretches : tuple of ndarray (n,)
-        In their order, as they were measured, in the unit of the signal.
+        In their order, as they were measured, in the unit of the signal; in the type that they were kept in.
     doubts : tuple of str
         What is wrong with it, in sentences.
     clipped : float
@@ -63,7 +72,7 @@ class Recording:
         Frequencies, Hz, of a record that holds a few tones wherever nothing is missing; none of others.
     """
 
-    stretches: tuple[Array, ...]
+    stretches: tuple[Samples, ...]
     doubts: tuple[str, ...]
     clipped: float
     tones_alone: tuple[float, ...] = ()
@@ -84,10 +93,11 @@ class Recording:
         whole = values[~left_out] if left_out.any() else values
         allowed = "a signal that varies"
         remedy = "Is the sensor connected?"
-        moves = whole.size > 0 and np.ptp(whole) > ROUNDING * max(whole.max(), -whole.min())
+        low, high = _ends(whole)
+        moves = high - low > ROUNDING * max(high, -low)
         require(moves, "signal", "the same number throughout", allowed, remedy)
         between = _between(left_out, values)
-        stretches = tuple(each for each in between if each.size >= FEWEST and np.ptp(each) > 0.0)
+        stretches = tuple(each for each in between if each.size >= FEWEST and each.max() > each.min())
         longest = f"{max(map(len, between))} samples without a gap at most"
         require(stretches, "signal", longest, f"at least {FEWEST} that vary")
         clipped, told_clipped = _clipped(whole)
@@ -111,11 +121,11 @@ class SignalPieces:
     """
 
     size: int
-    cut: tuple[tuple[Array, float, float, bool], ...]
+    cut: tuple[tuple[Samples, float, float, bool], ...]
 
     @classmethod
     def of(
-        cls, stretches: Sequence[Array], longest: float, rate: float = 1.0, speed: float = 0.0
+        cls, stretches: Sequence[Samples], longest: float, rate: float = 1.0, speed: float = 0.0
     ) -> "SignalPieces":
         """Cut stretches (n,) of a sampling rate and a speed, Hz, into pieces of so many samples at most.
 
@@ -130,9 +140,9 @@ class SignalPieces:
         size //= int(np.ceil(size / longest))
         if size > SLOW:
             size = quick_length(size)
-        cut = list[tuple[Array, float, float, bool]]()
+        cut = list[tuple[Samples, float, float, bool]]()
         for each in stretches:
-            mean = float(each.mean())
+            mean = _mean(each)
             turns = each.size / rate * speed
             loud = bool(speed) and beat(each, rate, (0.0, 0.5 * rate))
             reached = _reached(each, mean, max(int(SELDOM * turns), 1)) if speed else np.inf
@@ -180,10 +190,13 @@ class SignalPieces:
             yield view(_limited(*each)) if step == 1 else _thinned(*each, view, step)
 
 
-def _limited(samples: Array, mean: float, reached: float, faded: bool) -> Array:
+def _limited(samples: Samples, mean: float, reached: float, faded: bool) -> Array:
     """Samples less a mean, within a size, and faded at their ends."""
-    limited = np.clip(samples - mean, -reached, reached)
-    return limited * _fading(samples.size, 0, samples.size) if faded else limited
+    limited = floats(samples) - mean
+    np.clip(limited, -reached, reached, out=limited)
+    if faded:
+        limited *= _fading(samples.size, 0, samples.size)
+    return limited
 
 
 def _fading(size: int, first: int, last: int) -> Array:
@@ -194,7 +207,7 @@ def _fading(size: int, first: int, last: int) -> Array:
 
 
 def _thinned(
-    samples: Array, mean: float, reached: float, faded: bool, view: Callable[[Array], Array], step: int
+    samples: Samples, mean: float, reached: float, faded: bool, view: Callable[[Array], Array], step: int
 ) -> Array:
     """What a view makes of samples (n,), at one of so many of them, as `SignalPieces.seen` has it."""
     from scipy.fft import irfft, rfft
@@ -214,54 +227,65 @@ def _thinned(
     return total / (weight * step)
 
 
-def _reached(values: Array, mean: float, times: int) -> float:
+def _reached(values: Samples, mean: float, times: int) -> float:
     """Size that values (n,) have so many times, about a mean."""
     largest = np.zeros(0)
     for block in blocks(values, max(BLOCK, times)):
-        largest = np.concatenate([largest, np.abs(block - mean)])
+        largest = np.concatenate([largest, np.abs(floats(block) - mean)])
         largest = np.partition(largest, -times)[-times:] if largest.size > times else largest
     return float(largest.min())
 
 
-def _given(signal: ArrayLike, rate: float) -> tuple[Array, float]:
+def _given(signal: ArrayLike, rate: float) -> tuple[Samples, float]:
     """A signal of numbers and NaN, and its sampling rate, Hz."""
     allowed = "a series of numbers, NaN where one is missing"
-    values = real_array("signal", signal, allowed)
+    values = kept_small(real_numbers("signal", signal, allowed))
     require(values.ndim == 1, "signal", f"shape {values.shape}", allowed)
     require(values.size >= FEWEST, "signal", count_of(values.size, "sample"), f"at least {FEWEST}")
-    require(not np.isnan(values).all(), "signal", "no number, NaN throughout", allowed)
-    endless = values[np.isinf(values)]
-    require(not endless.size, "signal", f"{endless[:1].sum()}", allowed)
+    known = any(not np.isnan(block).all() for block in blocks(values))
+    require(known, "signal", "no number, NaN throughout", allowed)
+    for block in blocks(values):
+        endless = block[np.isinf(block)]
+        require(not endless.size, "signal", f"{endless[:1].sum()}", allowed)
     return values, positive("sampling rate (Hz)", rate)
 
 
-def _between(left_out: Mask, values: Array) -> list[Array]:
+def _ends(values: Samples) -> tuple[float, float]:
+    """Smallest and largest of values (n,); zeros of none."""
+    return (float(values.min()), float(values.max())) if values.size else (0.0, 0.0)
+
+
+def _mean(values: Samples) -> float:
+    return float(values.mean(dtype=np.float64))
+
+
+def _between(left_out: Mask, values: Samples) -> list[Samples]:
     """Stretches of values that are not left out, and known."""
     kept = (~(out | np.isnan(part)) for out, part in zip(blocks(left_out), blocks(values), strict=True))
     return [values[first:last] for first, last in runs_of(kept)]
 
 
-def _bridged(values: Array) -> tuple[Array, Mask, str]:
+def _bridged(values: Samples) -> tuple[Samples, Mask, str]:
     """Values with few missing ones filled in, which others are missing (n,), and what is told of those filled
     in."""
     missing = np.isnan(values)
-    if not missing.any():
-        return values, missing, ""
-    values = values.copy()
     few = [
         (first, last)
         for first, last in runs(missing)
         if last - first <= BRIDGED and first > 0 and last < values.size
     ]
+    if not few:
+        return values, missing, ""
+    values = values.astype(np.float64)
     for first, last in few:
         ends = values[[first - 1, last]]
         values[first:last] = np.interp(np.arange(first, last), [first - 1, last], ends)
     count = sum(last - first for first, last in few)
     told = f"{count} missing samples, up to {BRIDGED} in a row, are replaced by straight lines."
-    return values, np.isnan(values), told if count else ""
+    return values, np.isnan(values), told
 
 
-def _stands_still(values: Array, rate: float, still: float) -> tuple[Runs, str]:
+def _stands_still(values: Samples, rate: float, still: float) -> tuple[Runs, str]:
     """Where values do not move for so long, s, and what is told of that."""
     least = math.ceil(max(still * rate, FEWEST)) - 1 if still < values.size / rate else values.size
     parts = (values[first : first + BLOCK + 1] for first in range(0, values.size - 1, BLOCK))
@@ -271,11 +295,11 @@ def _stands_still(values: Array, rate: float, still: float) -> tuple[Runs, str]:
         return found, ""
     first, last = found[np.argmax(found[:, 1] - found[:, 0])]
     when = f"for {rounded((last - first) / rate)} s, from {rounded(first / rate)} s on"
-    where = f"at {rounded(values[first], 4)} {when}"
+    where = f"at {rounded(float(values[first]), 4)} {when}"
     return found, f"The signal stands still {where}, as of a channel that is stuck: that is left out."
 
 
-def _straight(values: Array, rate: float, turn: float) -> tuple[Runs, str]:
+def _straight(values: Samples, rate: float, turn: float) -> tuple[Runs, str]:
     """Where values are filled in by straight lines and cubics, and what is told of that."""
     found = filled_in(values, max(values.size / (turn * rate), 1.0))
     if not len(found):
@@ -290,7 +314,7 @@ def _straight(values: Array, rate: float, turn: float) -> tuple[Runs, str]:
     return found, told
 
 
-def _lost(values: Array, left_out: Mask, rate: float, still: float) -> tuple[list[Array], str]:
+def _lost(values: Samples, left_out: Mask, rate: float, still: float) -> tuple[list[Array], str]:
     """Where, of what is not left out, samples are missing that nothing marks, and what is told of that."""
     turn = min(still * rate, values.size)
     whole = runs_of((~part for part in blocks(left_out)), HOLDS_TONES)
@@ -320,14 +344,14 @@ def _leave_out(left_out: Mask, found: Iterable[Array]) -> None:
         left_out[max(first, 0) : last] = True
 
 
-def _tones(whole: Sequence[Array], rate: float, clipped: bool) -> tuple[float, ...]:
+def _tones(whole: Sequence[Samples], rate: float, clipped: bool) -> tuple[float, ...]:
     """Tones that all stretches without a gap hold alone, Hz, by the longest; none where one holds more."""
     known = sorted((each for each in whole if each.size >= HOLDS_TONES), key=len, reverse=True)
     found = tones_alone(known[0], rate, clipped=clipped) if known else ()
     return found if all(tones_alone(each, rate, clipped=clipped) for each in known[1:] if found) else ()
 
 
-def _in_stretches(stretches: Sequence[Array], left_out: Mask, rate: float) -> str:
+def _in_stretches(stretches: Sequence[Samples], left_out: Mask, rate: float) -> str:
     """What is told of a record with gaps."""
     if not left_out.any():
         return ""
@@ -339,12 +363,12 @@ def _in_stretches(stretches: Sequence[Array], left_out: Mask, rate: float) -> st
     return f"{where}: read in {number} without a gap ({lengths}{more} s)."
 
 
-def _clipped(values: Array) -> tuple[float, str]:
+def _clipped(values: Samples) -> tuple[float, str]:
     """Share of values (n,) at an end at which they are clipped, and what is told of it."""
     middle = _median(values)
     ends = []
     count = 0
-    for end in (values.min(), values.max()):
+    for end in _ends(values):
         here, beside = _at_the_end(values, end, max(abs(end - middle), 1e-300))
         if here >= CLIPPED and here > FEWER * beside:
             ends.append(rounded(end, 4))
@@ -355,12 +379,12 @@ def _clipped(values: Array) -> tuple[float, str]:
     return share, told if ends else ""
 
 
-def _at_the_end(values: Array, end: float, reach: float) -> tuple[int, int]:
+def _at_the_end(values: Samples, end: float, reach: float) -> tuple[int, int]:
     """How many values (n,) lie at an end, and how many at the next step beside it, which of coarse steps is
     farther away than `BELOW`."""
 
     def shares() -> Iterator[Array]:
-        return (np.abs(end - block) / reach for block in blocks(values))
+        return (np.abs(end - floats(block)) / reach for block in blocks(values))
 
     here = sum(int((share <= AT_THE_END).sum()) for share in shares())
     next_step = min(float(share[share > AT_THE_END].min(initial=1.0)) for share in shares()) + AT_THE_END
@@ -369,7 +393,7 @@ def _at_the_end(values: Array, end: float, reach: float) -> tuple[int, int]:
     return here, beside
 
 
-def _median(values: Array) -> float:
+def _median(values: Samples) -> float:
     """Median of values (n,)."""
     ranked = Ranked([values])
     return float(ranked.between((ranked.count - 1) // 2, ranked.count // 2 + 1).mean())
@@ -379,10 +403,10 @@ def _percent(share: float) -> str:
     return f"{rounded(100.0 * share, 2)} %"
 
 
-def _offset(values: Array) -> str:
+def _offset(values: Samples) -> str:
     """What is told of a mean that is large beside what moves."""
-    mean = float(values.mean())
-    squares = sum(float(np.square(block - mean).sum()) for block in blocks(values))
+    mean = _mean(values)
+    squares = sum(float(np.square(floats(block) - mean).sum()) for block in blocks(values))
     rest = float(np.sqrt(squares / values.size))
     if abs(mean) < OFFSET * rest:
         return ""

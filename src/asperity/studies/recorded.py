@@ -11,10 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from asperity.arguments import Array, NDArray, require
+from asperity.arguments import Array, NDArray, floats, kept_small, require
 from asperity.case.table_headings import heading_of
 from asperity.errors import InputError
 from asperity.growing_numbers import GrowingNumbers
+from asperity.ranks import known_pieces
 from asperity.studies import kept_signals, rates
 from asperity.studies.times import Clock, clock_of, doubt_rate, rate_beside
 from asperity.surfaces.readers import arrays, guards, matlab, text
@@ -54,14 +55,14 @@ def read_signal(
     in the unit of which its comment tells the full scale, as this package writes it.
     """
     found = read_record(path, rate, array=array, column=column)
-    return found.values, found.rate
+    return floats(found.values), found.rate
 
 
 @dataclass(frozen=True, eq=False)
 class Recorded:
     """A signal from a file."""
 
-    values: Array  # (n,)
+    values: NDArray[Any]  # (n,), in a small type where the file has one, or its numbers fit it
     rate: float  # Hz
     rate_by: str  # what says so in the file, with the verb; empty where it was given alone
 
@@ -96,26 +97,28 @@ def read_beside(path: Path, which: str, array: str | None = None) -> tuple[Array
     values, titles, _, _ = read_columns(file, array if numbered else which)
     if not numbered:
         require(values.ndim == 1, f"{which} in {file.name}", f"shape {values.shape}", "one number a sample")
-        return values, ""
+        return floats(values), ""
     count = values.shape[1] if values.ndim == 2 else 1
     number = int(which)
     allowed = f"one of 1 to {count}, or the name of an array"
     require(1 <= number <= count, f"column of the tacho in {file.name}", which, allowed)
-    column = values.reshape(len(values), -1)[:, number - 1]
+    column = floats(values.reshape(len(values), -1)[:, number - 1])
     return column, titles[number - 1] if titles else ""
 
 
-def _check_size(values: Array, source: str) -> None:
+def _check_size(values: NDArray[Any], source: str) -> None:
     """Refuse a signal whose squares no number holds."""
-    known = np.isfinite(values)
-    largest = max(float(values.max(initial=0.0, where=known)), -float(values.min(initial=0.0, where=known)))
+    largest = max((float(np.abs(piece).max(initial=0.0)) for piece in known_pieces([values])), default=0.0)
     held = largest == 0.0 or LEAST_PEAK < largest < MOST_PEAK
     allowed = f"{rounded(LEAST_PEAK)} to {rounded(MOST_PEAK)} at most"
     require(held, source, f"values of up to {rounded(largest)}", allowed, "Is its type right?")
 
 
-def read_columns(file: Path, array: str | None) -> tuple[Array, list[str], float | None, str]:
-    """What a file holds, titles of its columns, and the sampling rate, Hz, if it states it, and what does."""
+def read_columns(file: Path, array: str | None) -> tuple[NDArray[Any], list[str], float | None, str]:
+    """What a file holds, titles of its columns, and the sampling rate, Hz, if it states it, and what does.
+
+    Numbers are kept in the type that the file has them in where that is a small one.
+    """
     kind = _kind_of(file)
     titles = list[str]()
     rate = None
@@ -144,8 +147,7 @@ def read_columns(file: Path, array: str | None) -> tuple[Array, list[str], float
         if (told := rates.rate_in(beside, len(values), file.name)) is not None:
             rate = told[0]
             teller = f"'{told[1]}' says"
-    numbers = values if values.dtype == np.float64 else guards.scaled(values, 1.0, file.name)
-    return numbers, titles, rate, teller
+    return kept_small(guards.numbers_alone(values, file.name)), titles, rate, teller
 
 
 def _kind_of(file: Path) -> str:
@@ -199,11 +201,12 @@ def _of_wav(file: Path) -> tuple[float, Any]:
         remedy = "Save it as PCM of 16 bits."
         raise InputError(file.name, f"a kind of WAV that is not read ({said})", allowed, remedy) from None
     if values.dtype.kind == "u":
-        values = values.astype(float) - 128.0
-        return float(rate), values / 128.0
+        return float(rate), (values.astype(np.float32) - np.float32(128.0)) / np.float32(128.0)
     full = float(np.iinfo(values.dtype).max) + 1.0 if values.dtype.kind == "i" else 1.0
     if values.dtype.kind == "i" and (scale := told_scale(file)) is not None:
         return float(rate), values * (scale / _unit_number(file, values.dtype))
+    if values.dtype.itemsize <= 2:  # whose shares float32 has to the last bit
+        return float(rate), values.astype(np.float32) / np.float32(full)
     return float(rate), values / full
 
 
@@ -255,7 +258,7 @@ _DECIMAL_COMMA = re.compile(r"^[ \t]*(?:[-+]?\d+,0\d|-0,\d)\d*[ \t]*\r?$", re.MU
 """A single number with a decimal comma: nobody writes whole numbers as 05 or -0."""
 
 
-def _of_text(file: Path) -> tuple[Array, list[str]]:
+def _of_text(file: Path) -> tuple[NDArray[Any], list[str]]:
     """Numbers of a table, below lines of words, of which the last may be titles of its columns."""
     content = read_text(file, file.name, "a table of numbers", largest=LARGEST_TEXT, latin=True)
     refuse_decimal_commas(content, file.name)
@@ -288,4 +291,4 @@ def _of_text(file: Path) -> tuple[Array, list[str]]:
         line += len(lines)
     require(columns, file.name, "no numbers", "a table of numbers")
     del content, lines  # before the numbers take their whole room
-    return numbers.poured().reshape(-1, columns), heading_of(words, ["s", *[""] * (columns - 1)])
+    return numbers.kept_small().reshape(-1, columns), heading_of(words, ["s", *[""] * (columns - 1)])

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, file_path, finite_array, positive, require, shown
+from asperity.arguments import Array, ArrayLike, file_path, finite_array, floats, positive, require, shown
 from asperity.errors import InputError
 from asperity.studies.draws import Span
 from asperity.studies.recorded import read_columns, read_signal
@@ -117,14 +117,14 @@ def _response(file: Path, rate: str | float | None) -> tuple[Array, float]:
         return read_signal(file, rate)
     values, titles, stated, _ = read_columns(file, None)
     if stated and values.ndim == 1:
-        return values, stated
+        return floats(values), stated
     received = f"an array of shape {values.shape}"
     allowed = "a column of times (s), then the response"
     columns = values.ndim == 2 and values.shape[1] == 2
     require(columns, file.name, received, allowed, "Or give the sampling rate.")
     times = clock_of(values, titles or ["time (s)", ""], file.name)
     even = times.rate if times and not times.gaps else None
-    return values[:, 1], rate_beside(None, even, file.name)
+    return floats(values[:, 1]), rate_beside(None, even, file.name)
 
 
 @dataclass(frozen=True)

@@ -3,10 +3,11 @@
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from asperity.arguments import Array, require
+from asperity.arguments import Array, NDArray, floats, require
 from asperity.case.table_headings import unit_of
 from asperity.errors import InputError, OutOfRangeWarning
 from asperity.surfaces.readers.positions import LARGEST, places
@@ -42,13 +43,13 @@ class Clock:
     rate: float | None
     gaps: tuple[tuple[int, int], ...] = ()
 
-    def filled(self, values: Array) -> Array:
+    def filled(self, values: NDArray[Any]) -> NDArray[Any]:
         """Values (n,) with NaN where samples are missing."""
         before = [place for place, count in self.gaps for _ in range(count)]
-        return np.insert(values, before, np.nan) if before else values
+        return np.insert(floats(values), before, np.nan) if before else values
 
 
-def clock_of(values: Array, titles: Sequence[str], source: str) -> Clock | None:
+def clock_of(values: NDArray[Any], titles: Sequence[str], source: str) -> Clock | None:
     """Column of times, s, of a table (n, k), with the sampling rate and gaps, if they are even; None without
     one.
 
@@ -58,10 +59,10 @@ def clock_of(values: Array, titles: Sequence[str], source: str) -> Clock | None:
     named = [number for number, title in enumerate(titles) if _TITLE.match(title)]
     if named:
         unit = unit_of(titles[named[0]], "s") or "s"
-        return Clock(named[0], *_rate_and_gaps(values[:, named[0]] * factor(unit, "s"), source))
+        return Clock(named[0], *_rate_and_gaps(floats(values[:, named[0]]) * factor(unit, "s"), source))
     if titles or values.shape[1] < 2:
         return None
-    rate, gaps = _rate_and_gaps(values[:, 0], source)
+    rate, gaps = _rate_and_gaps(floats(values[:, 0]), source)
     return Clock(0, rate, gaps) if rate and BARE_RATES[0] <= rate <= BARE_RATES[1] else None
 
 

@@ -284,9 +284,10 @@ def third_octaves(lines: Sequence[Profile], *, overwrite: bool = False) -> Third
     for line in full:
         heights = own(line.heights) if overwrite else line.heights.copy()
         for step, processed in enumerate(_before_and_after(heights, line.spacing, levelled=whole)):
+            wavenumber = density = np.zeros(0)  # not held beside the next ones, as below
             wavenumber, density = psd(processed, line.spacing)
             sums[step] = sums[step] + density
-        del heights, processed  # before the next one is made
+        del heights, processed
     centres, before = band_levels(wavenumber, sums[0] / len(full), MICROMETRE)
     _, after = band_levels(wavenumber, sums[1] / len(full), MICROMETRE)
     wavelength = 1.0 / centres

@@ -194,12 +194,17 @@ def without_marks(array: NDArray[Any]) -> NDArray[Any]:
     return np.where(np.isfinite(array) & (np.abs(array) >= MARKED), np.array(np.nan, array.dtype), array)
 
 
+def numbers_alone(array: NDArray[Any], source: str) -> NDArray[Any]:
+    """Return an array as it is, if it holds real numbers."""
+    remedy = _of_several(source, "Select another one", "Keep numbers alone in the file.")
+    allowed = "real numbers"
+    require(array.dtype.kind in "fiu", source, f"data of type {array.dtype}", allowed, remedy)
+    return array
+
+
 def scaled(array: NDArray[Any], unit: float, source: str) -> Array:
     """Return real numbers times the length of their unit, m, as float64."""
-    remedy = _of_several(source, "Select another one", "Keep numbers alone in the file.")
-    real_numbers = array.dtype.kind in "fiu"
-    require(real_numbers, source, f"data of type {array.dtype}", "real numbers", remedy)
-    numbers = array.astype(np.float64)
+    numbers = numbers_alone(array, source).astype(np.float64)
     with np.errstate(over="ignore", invalid="ignore"):  # infinite heights are refused by name afterwards
         numbers *= unit
     return numbers
