@@ -1,11 +1,14 @@
 """From a case to a texture that was rolled over: quieter within its limits, by another law too."""
 
 import csv
+import itertools
 import json
 import os
 import re
 import shutil
+from dataclasses import fields
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,7 +19,7 @@ import asperity
 from asperity.case.cases import read_case
 from asperity.cli import main, optimising
 from asperity.optimising import running
-from asperity.optimising.allocation import rms_of
+from asperity.optimising.allocation import Limits, Trial, rms_of, search
 from asperity.written_numbers import signed
 from browser import assert_accessible, pages_of
 from command_line import words_of
@@ -152,13 +155,46 @@ def test_a_limit_is_kept_and_each_band_takes_its_share():
     found = asperity.optimise(CASE, limit=120.0, verify="areal", **bounds)
     assert found.settled
     assert found.trials[0].level > 125.0
-    assert found.trials[-1].level == pytest.approx(120.0, abs=0.06)
+    assert 119.95 <= found.trials[-1].level <= 120.0
     shares = 10.0 * np.log10(found.trials[-1].energies)
     assert np.ptp(shares) < 3.0
     assert "limit" in found.active
     before, after = found.levels["areal"]
     assert f"areal {before:.1f} to {after:.1f} dB(A) re 1 µm/s²" in found.sentence
     assert f"Limit 120 dB(A) re 1 µm/s²: by areal kept ({after:.1f})." in found.sentence
+
+
+@pytest.mark.parametrize("over", [0.03, 1.2])
+def test_a_limit_that_the_run_shown_misses_is_told_with_by_how_much_and_no_search_has_settled(over):
+    """By the law of the search it is kept, by that of the check it is not: as 30.1 of 30."""
+
+    class Louder(running.Optimised):
+        def level(self, after, law):
+            return 120.0 + over if law == "table" else 119.98
+
+    none = dict.fromkeys(field.name for field in fields(running.Optimised))
+    aim = SimpleNamespace(limit=120.0, verify="table", law="areal")
+    of = none | {"aim": aim, "came_to_rest": True, "measure": SimpleNamespace(units="dB")}
+    found = Louder(**of)
+    assert not found.settled
+    told = f"Limit 120 dB: by table missed by {over} dB ({120 + over:.2f}), by areal kept (120.0)."
+    assert found.of_limit == told
+    assert running.Optimised.settled.fget(SimpleNamespace(came_to_rest=True, missed={}))
+    assert not running.Optimised.settled.fget(SimpleNamespace(came_to_rest=False, missed={"areal": 0.0}))
+
+
+def test_of_what_was_met_that_is_shown_which_keeps_the_limit():
+    """A search that swings about a limit: the trial just below is better than one nearer, but above."""
+    levels = itertools.cycle([120.5, 110.0])
+    bounds = [np.full(1, each) for each in (0.0, -300.0, 300.0, 1.0)]
+    start = Trial(np.zeros(1), None, np.ones(1), 0.0)
+
+    def roll(wanted, lateral):
+        return Trial(wanted, lateral, 10.0 ** (np.full(1, next(levels)) / 10.0), 0.0)
+
+    trials, settled = search(roll, start, Limits(*bounds), 120.0, None, lambda words: None)
+    assert not settled
+    assert trials[-1].level == pytest.approx(110.0)
 
 
 @pytest.mark.long

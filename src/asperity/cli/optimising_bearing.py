@@ -55,6 +55,7 @@ def _document(found: OptimisedBearing) -> dict[str, Any]:
         "units": "m/s",
         "velocities_before": heard(after=False),
         "velocities_after": heard(after=True),
+        "missed": {law: over.tolist() for law, over in found.missed.items()},
         "floor": found.floor.tolist(),
         "limits": [limit if np.isfinite(limit) else None for limit in found.aim.limits.tolist()],
         "price": found.price,

@@ -39,6 +39,7 @@ def _document(found: Optimised) -> dict[str, Any]:
         "changes": found.changes,
         "levels": {law: list(levels) for law, levels in found.levels.items()},
         "limit": found.aim.limit,
+        "missed": found.missed,
         "limits": found.active,
         "columns": list(_columns(found)),
     }

@@ -187,6 +187,8 @@ def _shared(response: Response, limits: Limits, silence: float) -> Array:
 MOST_ROUNDS = 12
 SETTLED_LEVEL = 0.05
 """Change of the response that no longer counts, dB."""
+AIMED_BELOW = 0.5 * SETTLED_LEVEL
+"""By how much a limit is undercut, dB: what lies as far on either side of that keeps it."""
 HALVINGS = 3
 """How often a step that makes it louder is halved, at most."""
 LAY_TRIALS = 8
@@ -273,17 +275,23 @@ def _up_to(
     """Find the cheapest levels that keep a limit."""
     response = _in_proportion(trials[-1])
     before = len(trials)
+    aimed = limit - AIMED_BELOW
     for _ in range(MOST_ROUNDS):
         last = trials[-1]
-        trial = rolled(roughest(response, limits, limit))
+        trial = rolled(roughest(response, limits, aimed))
         trials = [*trials, trial]
         found = _in_proportion(trial)
         weights = response.weights ** (1.0 - RELAXATION) * found.weights**RELAXATION
         response = Response(weights, found.floor)
         still = np.abs(trial.levels - last.levels).max() < SETTLED_LEVEL
-        if abs(trial.level - limit) < SETTLED_LEVEL or (still and trial.level < limit):
+        if abs(trial.level - aimed) <= AIMED_BELOW or (still and trial.level <= limit):
             return trials, True
-    return [*trials, min(trials[before:], key=lambda each: abs(each.level - limit))], False
+
+    def rank(trial: Trial) -> tuple[float, float]:
+        """By how much the limit is missed, then the price."""
+        return max(trial.level - limit, 0.0), limits.cost(trial.levels)
+
+    return [*trials, min(trials[before:], key=rank)], False
 
 
 def _quieter(

@@ -11,8 +11,15 @@ from asperity.arguments import Array
 from asperity.case import any_case, form
 from asperity.case.ball_bearing import BearingUnderLoad
 from asperity.diagnostics import ISO_BANDS, band_velocities
-from asperity.errors import InputError, PhysicsWarning
-from asperity.optimising.allocation import FREE, MOST_ROUNDS, RELAXATION, SETTLED_LEVEL, SMALLEST_SHARE
+from asperity.errors import ComputationError, InputError, PhysicsWarning
+from asperity.optimising.allocation import (
+    AIMED_BELOW,
+    FREE,
+    MOST_ROUNDS,
+    RELAXATION,
+    SETTLED_LEVEL,
+    SMALLEST_SHARE,
+)
 from asperity.optimising.kinds import Optimisation
 from asperity.optimising.several_limits import cheapest
 from asperity.parameters import DURATION, ListOf, Number, Quantity, key, optional
@@ -25,7 +32,7 @@ from asperity.spectra import HALF_BAND, third_octave_bands
 from asperity.store import Store, made
 from asperity.surfaces.raceway import AroundTexture
 from asperity.threads import one_thread_in_linear_algebra
-from asperity.written_numbers import count_of, rounded, signed
+from asperity.written_numbers import count_of, in_a_row, rounded, signed
 
 if TYPE_CHECKING:
     from asperity.scenes.report import Result
@@ -38,6 +45,8 @@ JUDGED = tuple(zip(("low_band", "medium_band", "high_band"), ISO_BANDS, strict=T
 """Keys of the limits, and the bands of ISO 15242 that they limit, Hz."""
 STEP = 6.0
 """By which levels are raised from one trial to the next at most, dB."""
+CORRECTIONS = 3
+"""How often limits are lowered at most by what they are missed by when all of the duration is rolled."""
 STRANGE = 3.0
 """Level over a limit, dB, from which a trial says that levels were raised too far: they are no more then."""
 MADE = (1e-11, 1e-4)
@@ -197,7 +206,7 @@ class OptimisedBearing:
         Velocities with none of them: of balls that pass under the load, and of all that is not changed.
     trials : tuple of BearingTrial
         Those that the search went through; that of the case first, the one found last.
-    settled : bool
+    came_to_rest : bool
         Whether the search ended by itself.
     case : BearingUnderLoad
         The case with what was found.
@@ -211,7 +220,7 @@ class OptimisedBearing:
     alone: Array
     floor: Array
     trials: tuple[BearingTrial, ...]
-    settled: bool
+    came_to_rest: bool
     case: BearingUnderLoad
     result_before: "Result"
     result_after: "Result"
@@ -226,6 +235,16 @@ class OptimisedBearing:
         tree = self.result_after if after else self.result_before
         found = tree[bearing.BAND_VELOCITY.group].to_dataset()[bearing.BAND_VELOCITY.name].sel(law=law)
         return np.sqrt(np.mean(found.values**2, axis=0))
+
+    @property
+    def missed(self) -> dict[str, Array]:
+        """By how much the run after is over the limits (3,), dB, by law."""
+        return {law: _over(self.velocities(after=True, law=law), self.aim.limits) for law in self.laws}
+
+    @property
+    def settled(self) -> bool:
+        """Whether the search ended by itself, and the run after keeps all limits by each law."""
+        return self.came_to_rest and not any(each.any() for each in self.missed.values())
 
     @property
     def laws(self) -> tuple[str, ...]:
@@ -245,9 +264,13 @@ class OptimisedBearing:
                 f"{_micro(self.velocities(after=True, law=law)[number])}"
                 for law in self.laws
             ]
+            over = [
+                f"{rounded(each[number], 2)} dB by {law}" for law, each in self.missed.items() if each[number]
+            ]
             words.append(
                 f"{low:g} to {high:g} Hz, limit {_micro(limit)} µm/s: {', '.join(told)} µm/s "
-                f"({_micro(self.floor[number])} without what was changed)."
+                f"({_micro(self.floor[number])} without what was changed)"
+                f"{f': missed by {in_a_row(over)}' if over else ''}."
             )
         raised = int(np.count_nonzero(self.changes > SETTLED_LEVEL))
         lowered = int(np.count_nonzero(self.changes < -SETTLED_LEVEL))
@@ -259,6 +282,13 @@ class OptimisedBearing:
         if not self.settled:
             words.append("The search did not settle: the best that was met is shown.")
         return " ".join(words)
+
+
+def _over(velocities: Array, limits: Array) -> Array:
+    """Levels over limits (3,), dB; 0 where they are kept, or there is none."""
+    with np.errstate(divide="ignore"):
+        over = 20.0 * np.log10(velocities / limits)
+    return np.where(over > 0.0, over, 0.0)
 
 
 def _micro(velocity: float) -> str:
@@ -289,7 +319,8 @@ def optimised_bearing(case: BearingUnderLoad, aim: BearingAim, progress: Progres
 
     Each band of each part is rolled alone. What it adds is the acceleration less that of the bearing without
     any of them, sample by sample: balls that pass under a load shake it, too, in the same lines, so that
-    energies do not add. How they sum up is then corrected by trials of all together.
+    energies do not add. How they sum up is then corrected by trials of all together, and limits that are
+    missed where all of the duration is rolled, by another law too, are lowered by that and sought again.
     """
     bands = part_bands(case, aim)
     limits = aim.limits
@@ -306,16 +337,44 @@ def optimised_bearing(case: BearingUnderLoad, aim: BearingAim, progress: Progres
     _refuse_reached(limits, floor)
     each = [roll(alone, band.name) for band, alone in zip(bands, np.eye(len(bands)), strict=True)]
     alone = np.array([_velocities(case, acceleration - without) for acceleration in each])
-    trials, settled = _search(
-        lambda energies: _velocities(case, roll(energies, "all together")), alone, floor, bands, aim
-    )
-    energies = trials[-1].energies
-    changes = 10.0 * np.log10(energies)
-    found = with_energies(case, bands, energies)
     laws = tuple(dict.fromkeys((aim.verify, aim.law)))
-    # what each part makes is known by the search
-    results = [run(one.with_(laws=laws), progress, brief=True) for one in (case, found)]
-    return OptimisedBearing(aim, bands, changes, alone, floor, tuple(trials), settled, found, *results)
+
+    def verified(of: BearingUnderLoad) -> "Result":
+        return run(of.with_(laws=laws), progress, brief=True)  # what each part makes is known by the search
+
+    def sought(kept: Array) -> OptimisedBearing:
+        trials, rests = _search(
+            lambda energies: _velocities(case, roll(energies, "all together")),
+            alone, floor, bands, aim, kept,
+        )  # fmt: skip
+        energies = trials[-1].energies
+        changes = 10.0 * np.log10(energies)
+        found = with_energies(case, bands, energies)
+        return OptimisedBearing(
+            aim, bands, changes, alone, floor, tuple(trials), rests, found, before, verified(found)
+        )
+
+    before = verified(case)
+    return _within(sought, aim.limits)
+
+
+def _within(sought: Callable[[Array], OptimisedBearing], limits: Array) -> OptimisedBearing:
+    """What is found for limits (3,), m/s, lowered by what they are missed by, until they are kept; else that
+    which misses them least."""
+    found = [sought(limits)]
+    lowered = np.zeros(len(limits))
+    while (missed := _most_missed(found[-1])).any() and len(found) <= CORRECTIONS:
+        lowered = lowered + missed
+        try:
+            found.append(sought(limits * 10.0 ** (-lowered / 20.0)))
+        except ComputationError:  # nothing keeps lower ones
+            break
+    return min(reversed(found), key=lambda each: float(_most_missed(each).max()))
+
+
+def _most_missed(found: OptimisedBearing) -> Array:
+    """By how much the run after is over the limits (3,), dB, by the law that misses them most."""
+    return np.max(list(found.missed.values()), axis=0)
 
 
 def _refuse_reached(limits: Array, floor: Array) -> None:
@@ -341,16 +400,23 @@ def _ends(bands: list[PartBand], aim: BearingAim) -> tuple[Array, Array]:
 
 
 def _search(
-    roll: Callable[[Array], Array], alone: Array, floor: Array, bands: list[PartBand], aim: BearingAim
+    roll: Callable[[Array], Array],
+    alone: Array,
+    floor: Array,
+    bands: list[PartBand],
+    aim: BearingAim,
+    limits: Array,
 ) -> tuple[list[BearingTrial], bool]:
-    """Search the cheapest energies; trials, the best last, and whether the search settled."""
+    """Search the cheapest energies that keep limits (3,), m/s; trials, the best last, and whether the search
+    ended by itself."""
     price = _prices(aim, bands)
     price = np.maximum(price, FREE * price.max())
     lowest, highest = _ends(bands, aim)
-    limited = np.isfinite(aim.limits)
+    limited = np.isfinite(limits)
     weights = np.where(limited, np.nan_to_num(alone), 0.0).T ** 2
     still = np.where(limited, np.nan_to_num(floor), 0.0) ** 2
-    left = aim.limits**2 - still
+    aimed = limits * 10.0 ** (-AIMED_BELOW / 20.0)
+    left = np.maximum(aimed**2, 0.5 * (limits**2 + still)) - still  # where a limit is just above the floor
 
     def heard(energies: Array) -> BearingTrial:
         return BearingTrial(energies, roll(energies))
@@ -365,7 +431,7 @@ def _search(
     def excess(trial: BearingTrial) -> Array:
         """Levels over the limits (3,), dB; none where nothing is limited."""
         with np.errstate(divide="ignore"):
-            return np.where(limited, 20.0 * np.log10(trial.velocities / aim.limits), -np.inf)
+            return np.where(limited, 20.0 * np.log10(trial.velocities / limits), -np.inf)
 
     last = heard(np.ones(len(bands)))
     trials = [last]
@@ -377,8 +443,8 @@ def _search(
         over = excess(trial)[limited]
         moved = np.abs(10.0 * np.log10(trial.energies / last.energies)).max()
         held_back = (trial.energies > within * 10.0 ** (-SETTLED_LEVEL / 10.0)) & (within < highest)
-        at_limits = np.abs(over).max() < SETTLED_LEVEL and not held_back.any()
-        if over.max() < SETTLED_LEVEL and (at_limits or moved < SETTLED_LEVEL):
+        at_limits = np.abs(over).max() <= SETTLED_LEVEL and not held_back.any()
+        if over.max() <= 0.0 and (at_limits or moved < SETTLED_LEVEL):
             return trials, True
         found = followed(trial)
         if over.max() > STRANGE:  # so high up waves do not add as they did: balls leave the rings
@@ -389,7 +455,7 @@ def _search(
 
     def rank(trial: BearingTrial) -> tuple[float, float]:
         """By how much a limit is missed, then the price."""
-        return max(float(excess(trial).max()), SETTLED_LEVEL), float(-price @ np.log10(trial.energies))
+        return max(float(excess(trial).max()), 0.0), float(-price @ np.log10(trial.energies))
 
     return [*trials, min(trials[1:], key=rank)], False
 

@@ -59,7 +59,7 @@ class Optimised:
     trials : tuple of Trial
         Textures that the search went on from, rolled over with ``aim.law``; that of the case first, the one
         found last.
-    settled : bool
+    came_to_rest : bool
         Whether the search ended by itself.
     case : Case
         The case with the texture found.
@@ -73,7 +73,7 @@ class Optimised:
     before: Bands
     after: Bands
     trials: tuple[Trial, ...]
-    settled: bool
+    came_to_rest: bool
     case: scene.Case
     result_before: "Result"
     result_after: "Result"
@@ -103,14 +103,26 @@ class Optimised:
         return {law: after - before for law, (before, after) in self.levels.items()}
 
     @property
+    def missed(self) -> dict[str, float]:
+        """By how much the run after is over the limit, dB, by law; empty without a limit."""
+        if (limit := self.aim.limit) is None:
+            return {}
+        return {law: max(after - limit, 0.0) for law, (_, after) in self.levels.items()}
+
+    @property
+    def settled(self) -> bool:
+        """Whether the search ended by itself, and the run after keeps the limit by each law."""
+        return self.came_to_rest and not any(self.missed.values())
+
+    @property
     def of_limit(self) -> str:
         """Say whether the texture found keeps the limit, by each law; nothing where none was asked for."""
         if (limit := self.aim.limit) is None:
             return ""
         told = []
         for law, (_, after) in self.levels.items():
-            over = after - limit
-            kept = f"{over:.1f} dB over it" if over > 2 * AT_A_BOUND else f"kept ({after:.1f})"
+            over = self.missed[law]
+            kept = f"missed by {rounded(over, 2)} dB ({after:.2f})" if over else f"kept ({after:.1f})"
             told.append(f"by {law} {kept}")
         return f"Limit {limit:g} {written_units(self.measure.units)}: {', '.join(told)}."
 
