@@ -58,7 +58,8 @@ class ElasticGrid:
             table, self.lift = lifted_table(self.shape, self.spacing, self.modulus)
         else:
             make = influence_table if cells == "whole" else means_table
-            table, self.lift = make(reach_x, reach_y, dx, dy) / scale, 0.0
+            table = make(reach_x, reach_y, dx, dy) / scale
+            self.lift = 0.0
         taps = _unit_taps(dy / dx) * (scale / dx)
         self._sides = (dx / self.modulus, dy / self.modulus) if cells == "covered" else None
         self._known = {dtype: influence(table, taps, dtype) for dtype in (np.float64, np.float32)}
@@ -195,7 +196,8 @@ class ElasticGrid:
 
     def _rims_of(self, pressure: Array) -> tuple[Array, Array]:
         """Derivatives of the gap at rims (3, nx, ny), m/Pa, and covered shares of cells (nx, ny)."""
-        slopes, covered = np.zeros((3, *self.shape)), np.zeros(self.shape)
+        slopes = np.zeros((3, *self.shape))
+        covered = np.zeros(self.shape)
         assert self._sides is not None
         rims.rim_slopes(contiguous(pressure), *self._sides, slopes, covered)
         return slopes, covered

@@ -200,7 +200,8 @@ class HalfSpace(PressedGrid):
         require(one, "rtol and force_accuracy", "both", "one of them", remedy)
         key, tolerance = ("rtol", 1e-6) if rtol is None else ("rtol", _tolerance(rtol))
         if force_accuracy is not None:
-            key, tolerance = "force_accuracy", scan.rtol_for(force_accuracy)
+            key = "force_accuracy"
+            tolerance = scan.rtol_for(force_accuracy)
         heights = scan.heights_on(self, surface, "surface of the scan")
         job = scan.ScanJob(
             self,
@@ -276,13 +277,15 @@ class HalfSpace(PressedGrid):
         from asperity.contact import running_in, scan
 
         periodic.refuse_period(self, "running-in")
-        allowed, remedy = "a pressure at which asperities flow", "An elastic surface keeps no mark."
+        allowed = "a pressure at which asperities flow"
+        remedy = "An elastic surface keeps no mark."
         require(self.hardness is not None, "hardness of the half-space", "None", allowed, remedy)
         heights = scan.heights_on(self, surface, "surface to be run in")
         shape = self._field("body that runs in", body)
         scan.check_window("running-in", self.shape, heights.shape)
         scan.check_settings(workers, cache, progress)
-        load, most = self.checked_load(load), max(self.shape[0] - 1, 1)
+        load = self.checked_load(load)
+        most = max(self.shape[0] - 1, 1)
         allowed = f"a whole number from 1 to {most}"
         step = arguments.whole("stride of running-in", stride, allowed, at_least=1, at_most=most)
         job = running_in.RunningIn(self, shape, load, arguments.passes_of(passes), step)

@@ -36,12 +36,15 @@ class PressedGrid(ElasticGrid):
         On a period the approach is the lifted one of `asperity.contact.periodic`, there and in `at_load`.
         """
         soft = None if edges is None else self.softness(edges)
-        rows, at = np.zeros(self.shape), np.array([approach])
+        rows = np.zeros(self.shape)
+        at = np.array([approach])
         block = self.block(rows, gap, np.zeros(1), at, 0, rtol, load=total, soft=soft)
         if start is not None:
-            block.pressures[1, 0], block.solved[0] = start, 1
+            block.pressures[1, 0] = start
+            block.solved[0] = 1
         self.solve_block(block)
-        pressure, (solved, iterations, unconverged, _) = block.pressures[0, 0], block.counts.tolist()
+        pressure = block.pressures[0, 0]
+        (solved, iterations, unconverged, _) = block.counts.tolist()
         outcome = Outcome.CONVERGED if solved else Outcome.NO_CONTACT
         if unconverged:
             outcome = Outcome.ITERATION_LIMIT if iterations >= MAX_ITERATIONS else Outcome.STALLED
@@ -79,8 +82,10 @@ class PressedGrid(ElasticGrid):
         if soft is not None:
             softness, drop, flow = map(contiguous, (soft.softness, soft.drop, soft.flow))
             soft = Softness(softness, drop, flow, soft.yielding)
-        k, size = len(approaches), (len(approaches), len(planes))
-        nx, ny = shape = body.shape
+        k = len(approaches)
+        shape = body.shape
+        nx, ny = shape
+        size = (len(approaches), len(planes))
         known = self._known[np.float32 if single else np.float64]
         return scanning.Block(
             rows, body, planes, approaches, stride, load, 0.0, self.pressure_cap, rtol, MAX_ITERATIONS,
@@ -96,10 +101,14 @@ class PressedGrid(ElasticGrid):
         Threads share the convolutions that are prepared: at worst one overwrites what another has prepared,
         which then comes again.
         """
-        position, level, count, precision = 0, 0, len(block.planes), block.room.outer.dtype.type
+        position = 0
+        level = 0
+        count = len(block.planes)
+        precision = block.room.outer.dtype.type
         while position < count:
             refuse_to_go_on()
-            end, known = min(position + AT_ONCE, count), self._known[precision]
+            end = min(position + AT_ONCE, count)
+            known = self._known[precision]
             position, level, nx, ny = scanning.solve_positions(known, block, position, level, end)
             if position < end:
                 self._known[precision] = prepared(self._known[precision], nx, ny)
@@ -123,4 +132,5 @@ class PressedGrid(ElasticGrid):
             iterations += contact.iterations
             if contact.approach <= reach:
                 return replace(contact, iterations=iterations)
-            estimate, start = contact.approach, contact.pressure
+            estimate = contact.approach
+            start = contact.pressure

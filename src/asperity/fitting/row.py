@@ -111,7 +111,8 @@ class Row:
 
     def _ends(self, squares: Array, spread: Spread) -> tuple[End, End]:
         allowed = np.flatnonzero(squares <= squares.min() + (spread.quantile * spread.scale) ** 2)
-        first, last = int(allowed[0]), int(allowed[-1])
+        first = int(allowed[0])
+        last = int(allowed[-1])
         stops = FURTHER * (first == 0), FURTHER * (last == len(squares) - 1)
         return End(float(self.fine[first]), stops[0]), End(float(self.fine[last]), stops[1])
 

@@ -119,7 +119,8 @@ class ForceCurve:
         curved = (cubic != 0.0) | (square != 0.0)
         if not curved.any():
             return straight
-        low, high = start, self.knots[interval + 1]
+        low = start
+        high = self.knots[interval + 1]
         for _ in range(65):  # halving a cubic's interval to rounding
             middle = 0.5 * (low + high)
             if np.all((middle == low) | (middle == high)):

@@ -1,5 +1,4 @@
-"""A figure as numbfrom asperity.arguments import Array
-ers: panels with axes and marks, which the page and matplotlib draw alike."""
+"""A figure as numbers: panels with axes and marks, which the page and matplotlib draw alike."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass

@@ -155,7 +155,8 @@ class Stepper:
         offset = max(step - 1, 0) // self.length * self.length
         if offset == self.offset:
             return
-        self.offset, self.end = offset, min(offset + self.length, self.course.total)
+        self.offset = offset
+        self.end = min(offset + self.length, self.course.total)
         steps = range(offset, self.end + 1)
         count = len(steps)
         if self.shapes.shape[2]:
