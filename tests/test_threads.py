@@ -74,7 +74,7 @@ def test_results_come_in_order_few_are_held_and_errors_come_out():
 def test_contacts_of_a_scan_are_such_pieces(monkeypatch):
     """A block of 64 positions looks up every 16."""
     looks = []
-    monkeypatch.setattr("asperity.contact.pressed_grid.refuse_to_go_on", lambda: looks.append(1))
+    monkeypatch.setattr("asperity.contact.pressed.refuse_to_go_on", lambda: looks.append(1))
     x = 1e-5 * np.arange(-8, 9)
     body = (x[:, None] ** 2 + x**2) / (2 * 0.025)
     HalfSpace((17, 17), 1e-5, 115e9).scan(np.zeros((80, 17)), body, [1e-7])

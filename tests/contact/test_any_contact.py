@@ -159,7 +159,7 @@ def test_a_load_costs_no_more_than_the_approach_that_it_leads_to(monkeypatch, rm
     assert by_approach.force == pytest.approx(load, rel=1e-7)
     assert by_load.iterations <= 1.5 * by_approach.iterations
     low = gap.min() + 0.3 * (by_load.approach - gap.min())
-    monkeypatch.setattr("asperity.contact.pressed_grid.foundation_approach", lambda *_: low)
+    monkeypatch.setattr("asperity.contact.pressed.foundation_approach", lambda *_: low)
     again = half_space.solve(gap, load=load, rtol=1e-8)
     assert again.iterations > by_load.iterations
     np.testing.assert_allclose(again.pressure, by_load.pressure, atol=1e-5 * by_load.pressure.max())

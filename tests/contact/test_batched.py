@@ -164,7 +164,7 @@ def test_batches_follow_the_memory_and_do_not_change_the_forces():
 
 
 def test_what_does_not_converge_is_told(monkeypatch):
-    monkeypatch.setattr("asperity.contact.pressed_grid.MAX_ITERATIONS", 5)
+    monkeypatch.setattr("asperity.contact.pressed.MAX_ITERATIONS", 5)
     counts = scan_forces(replace(rolling(32), approaches=[APPROACH], device=strict_device())).counts
     assert counts == (POSITIONS, 5 * POSITIONS, POSITIONS, 0)
 

@@ -8,6 +8,7 @@ import pytest
 from scipy import optimize
 
 from asperity import HalfSpace, Hertz, run
+from asperity.contact import pressed
 from asperity.contact.batched import processor, solve_batched
 from asperity.kernels import rim_curves, rims
 from asperity.laws import names, spec_of
@@ -60,8 +61,8 @@ def test_every_cell_at_a_rim_keeps_the_gap_of_the_curves(across, ratio, height, 
     """Cells are listed and computed by vectors: here one after the other, of the pressure that was found."""
     half_space, gap = ball_on_cells(across, (0.2, 0.1), ratio)
     gap += height * np.random.default_rng(across).uniform(-1.0, 1.0, gap.shape)
-    block = half_space.block(-gap, np.zeros_like(gap), np.zeros(1), [1.0], 1, 1e-5, single)
-    half_space.solve_block(block)
+    block = pressed.block_of(half_space, -gap, np.zeros_like(gap), np.zeros(1), [1.0], 1, 1e-5, single)
+    pressed.solve_block(half_space, block)
     pressure, found = np.pad(block.pressures[0, 0], 1), block.room.rims
     overlap = gap < 1.0
     rows, across_them = (np.flatnonzero(overlap.any(axis=axis)) for axis in (1, 0))
@@ -411,7 +412,7 @@ def test_asperities_of_few_cells_bend_as_the_smallest_that_are_resolved():
 def on_a_device():
     """A scan of covered cells, solved in batches."""
     half_space, gap = ball_on_cells(2)
-    block = half_space.block(0.0 * gap, gap, np.zeros(1), np.ones(1), 1, 1e-6)
+    block = pressed.block_of(half_space, 0.0 * gap, gap, np.zeros(1), np.ones(1), 1, 1e-6)
     solve_batched(half_space, block, processor())
 
 

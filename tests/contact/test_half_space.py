@@ -101,7 +101,7 @@ def test_a_start_changes_nothing_but_the_work_and_is_left_as_it_is():
 def test_what_does_not_converge_says_so(monkeypatch):
     gap, half_space = rough()
     contact = half_space.solve(gap, approach=1e-6)
-    for module in ("elastic_grid", "pressed_grid"):
+    for module in ("elastic_grid", "pressed"):
         monkeypatch.setattr(f"asperity.contact.{module}.MAX_ITERATIONS", 2)
     with pytest.warns(UnconvergedWarning, match=r"contact at approach 1·10⁻⁶ m .*iteration limit"):
         found = half_space.solve(gap, approach=1e-6, rtol=1e-9)

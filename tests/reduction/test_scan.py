@@ -9,6 +9,7 @@ import pytest
 
 from asperity import HalfSpace, HeightMap
 from asperity.contact import scan
+from asperity.contact.pressed import block_of, solve_block
 from asperity.contact.scan import ScanJob, first_touch, scan_forces
 from asperity.errors import TruncatedContactWarning, UnconvergedWarning
 from asperity.reduction.stiffness import ForceTable
@@ -72,7 +73,7 @@ def test_of_the_window_is_looked_at_what_may_overlap(stride):
     assert (ball()[: along.start + 2] - heights.max() > approaches[-1]).all()
     space = half_space()
     planes = np.zeros(scanned.positions)
-    whole = space.solve_block(space.block(heights, ball(), planes, approaches, stride, 4e-6))
+    whole = solve_block(space, block_of(space, heights, ball(), planes, approaches, stride, 4e-6))
     assert np.array_equal(scan_forces(scanned).forces, whole.totals * space.cell_area)
     assert scanned.touched(-1e-3) == (slice(0, 1), slice(0, 1))
 
@@ -118,7 +119,7 @@ def test_flaws_are_warned_of(monkeypatch):
     cut_off = r"4 of 4 .* \(100 %\) .* A window of 0\.1\d+ mm holds them"
     with pytest.warns(TruncatedContactWarning, match=cut_off):
         half_space(21).scan(np.zeros((24, 21)), ball(21), [0.5e-6])
-    monkeypatch.setattr("asperity.contact.pressed_grid.MAX_ITERATIONS", 1)
+    monkeypatch.setattr("asperity.contact.pressed.MAX_ITERATIONS", 1)
     with pytest.warns(UnconvergedWarning, match="4 of 4 contact solutions of the scan.* larger rtol"):
         forces = half_space().scan(rough(44), ball(), [0.2e-6])
     assert forces.attrs["unconverged"] == 4

@@ -173,7 +173,7 @@ def test_every_scan_of_a_case_has_the_tolerance_of_its_key(monkeypatch):
         check(self)
 
     monkeypatch.setattr(ScanJob, "__post_init__", noted)
-    monkeypatch.setattr("asperity.contact.pressed_grid.MAX_ITERATIONS", 4)
+    monkeypatch.setattr("asperity.contact.pressed.MAX_ITERATIONS", 4)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         compute(prepared_of(**LOOSE), quiet)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from asperity.arguments import Array, NDArray, require, shown
-from asperity.contact.pressed_grid import PressedGrid
+from asperity.contact.elastic_grid import ElasticGrid
 from asperity.contact.solved import edge_share
 from asperity.errors import ComputationError, InputError
 from asperity.kernels import batched
@@ -104,7 +104,7 @@ SMALLEST_BOX = 8
 """Cells along a box, at least: smaller transforms take no less time."""
 
 
-def solve_batched(half_space: PressedGrid, block: Block, device: Device) -> None:
+def solve_batched(half_space: ElasticGrid, block: Block, device: Device) -> None:
     """Solve the contacts of a block at their approaches, each from the pressure at the approach before.
 
     As many are solved at once as fit into the device's memory, fewer if that runs out all the same; a
@@ -139,7 +139,7 @@ def solve_batched(half_space: PressedGrid, block: Block, device: Device) -> None
         size = (size + 1) // 2
 
 
-def _solved(half_space: PressedGrid, b: Block, positions: slice, device: Device) -> tuple[Array, Any]:
+def _solved(half_space: ElasticGrid, b: Block, positions: slice, device: Device) -> tuple[Array, Any]:
     """Solve contacts on boxes as large as the largest overlap; return totals and counts as of a block.
 
     Nothing outside of an overlap can carry pressure, so that no solution depends on the size of the box.

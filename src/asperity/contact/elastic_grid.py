@@ -61,8 +61,8 @@ class ElasticGrid:
             table = make(reach_x, reach_y, dx, dy) / scale
             self.lift = 0.0
         taps = _unit_taps(dy / dx) * (scale / dx)
-        self._sides = (dx / self.modulus, dy / self.modulus) if cells == "covered" else None
-        self._known = {dtype: influence(table, taps, dtype) for dtype in (np.float64, np.float32)}
+        self.sides = (dx / self.modulus, dy / self.modulus) if cells == "covered" else None
+        self.known = {dtype: influence(table, taps, dtype) for dtype in (np.float64, np.float32)}
 
     def __repr__(self) -> str:
         spacing = " × ".join(written(each, "m", "um") for each in self.spacing)
@@ -74,7 +74,7 @@ class ElasticGrid:
     @property
     def influence(self) -> Influence:
         """Influence of pressure on displacement, in double precision."""
-        return self._known[np.float64]
+        return self.known[np.float64]
 
     @property
     def cell_area(self) -> float:
@@ -94,7 +94,8 @@ class ElasticGrid:
         ndarray, shape (nx, ny)
             Displacement, m; of a period without its mean.
         """
-        p, spectrum = self._field("pressure", pressure), padded_spectrum(self.influence.table, *self.shape)
+        p = self._field("pressure", pressure)
+        spectrum = padded_spectrum(self.influence.table, *self.shape)
         return convolve_padded(p[None], spectrum, np)[0] - self.lift * p.sum()
 
     def tangent_stiffness(self, pressure: ArrayLike, rtol: float = 1e-9, edges: Edges | None = None) -> float:
@@ -194,12 +195,20 @@ class ElasticGrid:
         """Find how cells at edges give way."""
         return softness_at(edges, self.modulus, self.hardness)
 
+    def covered_cells(self, pressure: Array, edges: Edges | None) -> float:
+        """Number of cells in contact, those at rims as far as they are covered, at edges as far as sound."""
+        if edges is not None:
+            return self.softness(edges).covered_cells(pressure, edges.shares)
+        if self.cells == "whole":
+            return int(np.count_nonzero(pressure))
+        return float(self._rims_of(pressure)[1].sum())
+
     def _rims_of(self, pressure: Array) -> tuple[Array, Array]:
         """Derivatives of the gap at rims (3, nx, ny), m/Pa, and covered shares of cells (nx, ny)."""
         slopes = np.zeros((3, *self.shape))
         covered = np.zeros(self.shape)
-        assert self._sides is not None
-        rims.rim_slopes(contiguous(pressure), *self._sides, slopes, covered)
+        assert self.sides is not None
+        rims.rim_slopes(contiguous(pressure), *self.sides, slopes, covered)
         return slopes, covered
 
 

@@ -1,6 +1,7 @@
 """Frictionless contact of an elastic half-space with a rough or smooth body, at given approach or load."""
 
 import math
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -8,8 +9,8 @@ import numpy as np
 from asperity import arguments
 from asperity.arguments import ArrayLike, real, require
 from asperity.contact import periodic
-from asperity.contact.elastic_grid import check_edges, warn_unconverged
-from asperity.contact.pressed_grid import PressedGrid
+from asperity.contact.elastic_grid import ElasticGrid, check_edges, warn_unconverged
+from asperity.contact.pressed import at_approach, at_load
 from asperity.contact.solved import Contact
 from asperity.progress import Progress
 from asperity.store import Store
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 BELOW_ONE = math.nextafter(1.0, 0.0)
 
 
-class HalfSpace(PressedGrid):
+class HalfSpace(ElasticGrid):
     """Elastic half-space on a grid of rectangular cells, with a free or a periodic boundary.
 
     Parameters
@@ -119,13 +120,16 @@ class HalfSpace(PressedGrid):
         p = None if start is None else np.clip(self._field("start pressure", start), 0.0, self.pressure_cap)
         if edges is not None:
             check_edges(edges, self, self.shape)
-        solver = periodic if self.boundary == "periodic" else HalfSpace
+        free = self.boundary == "free"
         known: dict[str, Any] = {} if edges is None else {"edges": edges}
+        solve: Callable[..., Contact]
         if approach is not None:
             at = real("approach", approach, "a finite length, m")
-            contact = solver.at_approach(self, g, at, p, rtol, **known)
+            solve = at_approach if free else periodic.period_at_approach
+            contact = solve(self, g, at, p, rtol, **known)
         else:
-            contact = solver.at_load(self, g, self.checked_load(load), p, rtol, **known)
+            solve = at_load if free else periodic.period_at_load
+            contact = solve(self, g, self.checked_load(load), p, rtol, **known)
         if not contact.converged:
             warn_unconverged(f"contact at approach {rounded(contact.approach, 4)} m", contact.outcome)
         return contact

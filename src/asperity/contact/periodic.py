@@ -9,17 +9,15 @@ their images.
 """
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from asperity.arguments import Array, require
+from asperity.contact.elastic_grid import ElasticGrid
+from asperity.contact.pressed import at_approach, at_load
+from asperity.contact.solved import Contact
 from asperity.errors import Outcome
 from asperity.written_numbers import rounded
-
-if TYPE_CHECKING:
-    from asperity.contact.pressed_grid import PressedGrid
-    from asperity.contact.solved import Contact
 
 ROUGHLY = 1e-3
 """Accuracy of the stiffness that a Newton step goes by."""
@@ -27,7 +25,7 @@ HALF = 0.5
 """Share of the tolerance that is left to the pressure, and of it to the approach."""
 
 
-def refuse_period(half_space: "PressedGrid", what: str) -> None:
+def refuse_period(half_space: ElasticGrid, what: str) -> None:
     """Refuse a periodic half-space for what needs a window that moves, or tractions along the surface."""
     require(
         half_space.boundary == "free", f"boundary of the half-space of {what}",
@@ -35,9 +33,9 @@ def refuse_period(half_space: "PressedGrid", what: str) -> None:
     )  # fmt: skip
 
 
-def at_load(
-    half_space: "PressedGrid", gap: Array, load: float, start: Array | None, rtol: float
-) -> "Contact":
+def period_at_load(
+    half_space: ElasticGrid, gap: Array, load: float, start: Array | None, rtol: float
+) -> Contact:
     """Solve a periodic contact under a load, N; arguments checked, silent.
 
     The tolerance is relative to the overlap, which the lifted one exceeds: where that matters, a second
@@ -45,18 +43,18 @@ def at_load(
     """
     if load > 0.0 and np.ptp(gap) == 0.0:
         return _flat(half_space, gap, load)
-    contact = half_space.at_load(gap, load, start, rtol)
+    contact = at_load(half_space, gap, load, start, rtol)
     lowered = _lowered(contact)
     if lowered.residual > rtol:
         tolerance = HALF * rtol * contact.residual / lowered.residual
-        again = half_space.at_load(gap, load, contact.pressure, tolerance)
+        again = at_load(half_space, gap, load, contact.pressure, tolerance)
         lowered = replace(_lowered(again), iterations=contact.iterations + again.iterations)
     return lowered
 
 
-def at_approach(
-    half_space: "PressedGrid", gap: Array, approach: float, start: Array | None, rtol: float
-) -> "Contact":
+def period_at_approach(
+    half_space: ElasticGrid, gap: Array, approach: float, start: Array | None, rtol: float
+) -> Contact:
     """Solve a periodic contact at an approach of the mean planes, m; arguments checked but for its limit.
 
     Looks for the lifted approach at which the mean planes have come so near. Without hardness that is a
@@ -77,9 +75,9 @@ def at_approach(
     high = np.inf
     iterations = 0
     if overlap <= 0.0:
-        return half_space.at_approach(gap, approach, None, rtol)
+        return at_approach(half_space, gap, approach, None, rtol)
     while True:
-        contact = half_space.at_approach(gap, lifted, start, HALF * rtol * overlap / (lifted - lowest))
+        contact = at_approach(half_space, gap, lifted, start, HALF * rtol * overlap / (lifted - lowest))
         lowered = _lowered(contact)
         start = contact.pressure
         iterations += contact.iterations
@@ -95,15 +93,15 @@ def at_approach(
     return replace(lowered, approach=approach, residual=residual, iterations=iterations)
 
 
-def _flat(half_space: "PressedGrid", gap: Array, load: float) -> "Contact":
+def _flat(half_space: ElasticGrid, gap: Array, load: float) -> Contact:
     """Contact of parallel planes: the pressure is the same everywhere."""
-    untouched = half_space.at_approach(gap, float(gap.min()), None, HALF)
+    untouched = at_approach(half_space, gap, float(gap.min()), None, HALF)
     area = gap.size * half_space.cell_area
     pressure = np.full_like(gap, load / area)
     return replace(untouched, pressure=pressure, force=load, area=area, outcome=Outcome.CONVERGED)
 
 
-def _lowered(contact: "Contact") -> "Contact":
+def _lowered(contact: Contact) -> Contact:
     """Contact whose approach and residual are those of the mean planes."""
     approach = contact.approach - contact.half_space.lift * float(contact.pressure.sum())
     lowest = float(contact.undeformed_gap.min())

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from asperity.arguments import MOST_PASSES, SHAKEDOWN, Array, NDArray
-from asperity.contact.pressed_grid import PressedGrid
+from asperity.contact.elastic_grid import ElasticGrid
+from asperity.contact.pressed import at_load
 from asperity.contact.scan import Counts, total, warn_of_flaws
 from asperity.errors import UnconvergedWarning
 from asperity.kernels.scanning import TRUNCATED
@@ -26,7 +27,7 @@ PIECE = 256
 class RunningIn:
     """A body to be rolled over a surface, and how often: all that the lowering depends on."""
 
-    half_space: PressedGrid  # grid of the window, (nx, ny) cells; modulus and hardness
+    half_space: ElasticGrid  # grid of the window, (nx, ny) cells; modulus and hardness
     body: Array  # (nx, ny), shape of the smooth body, m, zero at its lowest point
     load: float  # N
     passes: int | None  # None for as many as it takes to shakedown
@@ -37,8 +38,8 @@ class RunningIn:
     def tolerance(self) -> float:
         """Lowering that counts as none, m: `SETTLED_SHARE` of the approach of the smooth, elastic bodies."""
         space = self.half_space
-        elastic = PressedGrid(space.shape, space.spacing, space.modulus, cells=space.cells)
-        return SETTLED_SHARE * elastic.at_load(self.body, self.load, None, 1e-4).approach
+        elastic = ElasticGrid(space.shape, space.spacing, space.modulus, cells=space.cells)
+        return SETTLED_SHARE * at_load(elastic, self.body, self.load, None, 1e-4).approach
 
     def key(self, heights: Array) -> str:
         """Name in the store of what these heights become."""
@@ -134,7 +135,7 @@ def _piece(heights: Array, state: dict[str, NDArray[Any]], job: RunningIn, posit
     start = None
     for first in positions:
         under = slice(first, first + rows)
-        contact = space.at_load(job.body - (heights[under] - lowering[under]), job.load, start, job.rtol)
+        contact = at_load(space, job.body - (heights[under] - lowering[under]), job.load, start, job.rtol)
         state["touched"][under] |= contact.pressure > 0.0
         if contact.pressure.max() >= space.pressure_cap:
             lowering[under] += contact.plastic_indentation

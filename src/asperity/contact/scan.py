@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from asperity.arguments import Array, ArrayLike, finite_array, real, real_array, require, shown, whole
 from asperity.contact.batched import Device, find_device, solve_batched
 from asperity.contact.elastic_grid import check_edges
+from asperity.contact.pressed import block_of, solve_block
 from asperity.errors import Grade, TruncatedContactWarning, UnconvergedWarning, percent
 from asperity.kernels.scanning import TRUNCATED
 from asperity.progress import Progress, counted
@@ -29,7 +30,7 @@ from asperity.written_numbers import rounded
 if TYPE_CHECKING:
     import xarray
 
-    from asperity.contact.pressed_grid import PressedGrid
+    from asperity.contact.elastic_grid import ElasticGrid
 
 FORCE_ACCURACY = 1e-4
 """Largest relative error of a scanned force: at most 0.2 dB in a band of the force on a path, to ka = 16."""
@@ -127,7 +128,7 @@ def window_for(body: Array, spacing: tuple[float, float], overlap: float) -> flo
     return 1.1 * float(max(n * d * g for n, d, g in zip(body.shape, spacing, grown, strict=True)))
 
 
-def heights_on(half_space: "PressedGrid", surface: ArrayLike | HeightMap, what: str) -> Array:
+def heights_on(half_space: "ElasticGrid", surface: ArrayLike | HeightMap, what: str) -> Array:
     """Heights of a surface, complete and on the grid of a half-space, m; `what` names it in messages."""
     require(not isinstance(surface, Profile), what, "a line of heights", "a map of heights")
     if isinstance(surface, HeightMap):
@@ -187,7 +188,7 @@ BLOCK_BYTES = 1200
 class ScanJob:
     """A body to be moved along a surface, and how its contacts are solved: all that the forces depend on."""
 
-    half_space: "PressedGrid"  # grid of the window, (nx, ny) cells; modulus and hardness
+    half_space: "ElasticGrid"  # grid of the window, (nx, ny) cells; modulus and hardness
     surface: Strip  # (n, ny) heights, m, peaks positive
     body: Array  # (nx, ny), shape of the smooth body, m, zero at its lowest point
     approaches: Array  # (k,), from the planes, m, increasing
@@ -285,11 +286,11 @@ class ScanJob:
             rows, body = rows[beneath, across], body[along, across]
             edges = None if edges is None else edges.rearranged(lambda field: field[beneath, across])
         soft = None if edges is None else space.softness(edges)
-        block = space.block(
-            rows, body, planes, self.approaches, self.stride, self.rtol, self.single, soft=soft
+        block = block_of(
+            space, rows, body, planes, self.approaches, self.stride, self.rtol, self.single, soft=soft
         )
         if self.device is None:
-            space.solve_block(block)
+            solve_block(space, block)
         else:
             solve_batched(space, block, self.device)
         return {"forces": block.totals * space.cell_area, "counts": block.counts}

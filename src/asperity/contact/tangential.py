@@ -13,6 +13,7 @@ from asperity.contact.friction import Friction, SlidingContact, cell_places
 from asperity.contact.friction_work import with_work
 from asperity.contact.halfspace import HalfSpace
 from asperity.contact.periodic import refuse_period
+from asperity.contact.pressed import at_load
 from asperity.contact.solved import Contact
 from asperity.errors import ComputationError, Outcome, OutOfRangeWarning, UnconvergedWarning, percent
 from asperity.kernels import traction as kernel
@@ -439,7 +440,7 @@ class FrictionalHalfSpace:
             if self._couples:
                 traction = found.traction[0] - 1j * found.traction[1]
                 gap = normal.undeformed_gap + _convolved(self._influence(0.0, False)[1], traction).real
-                loaded = space.at_load(gap, normal.force, loaded.pressure, 1e-8)
+                loaded = at_load(space, gap, normal.force, loaded.pressure, 1e-8)
             last = bound
             bound = self.friction.coefficient(velocity, slipped) * loaded.pressure
             if np.abs(bound - last).max() <= ROUNDS_AGREE * last.max():

@@ -11,6 +11,7 @@ import numpy as np
 
 from asperity.arguments import Array, ArrayLike, NDArray, finite_array, positive, real, require, two, whole
 from asperity.contact.friction import SlidingContact, cell_places
+from asperity.contact.pressed import at_load
 from asperity.contact.scan import Counts, check_settings, check_window, heights_on, total, warn_of_flaws
 from asperity.contact.tangential import SPIN_AHEAD, FrictionalHalfSpace
 from asperity.errors import OutOfRangeWarning, UnconvergedWarning
@@ -453,7 +454,7 @@ def worn(
     passes = whole("passes", passes, "a whole number from 1 to 1e12", at_least=1, at_most=1e12)
     rtol = real("rtol", rtol, "a number between 0 and 1, as 1e-6", above=0.0, below=1.0)
     if step is None:
-        smooth = space.at_load(shape_of, float(loads.mean()), None, 1e-4)
+        smooth = at_load(space, shape_of, float(loads.mean()), None, 1e-4)
         step = PRESSURE_SHARE * smooth.force / smooth.area * min(space.spacing) / space.modulus
         step = min(step, ROUGHNESS_SHARE * float(heights.std()) or step)
     step = positive("step", step)
@@ -519,7 +520,7 @@ def _pass(
         refuse_to_go_on()
         tell(max(first, 0), positions, message)
         under = np.arange(first, first + rows) % len(heights)
-        contact = space.at_load(job.body - heights[under], float(job.load[first]), start, job.rtol)
+        contact = at_load(space, job.body - heights[under], float(job.load[first]), start, job.rtol)
         with warnings.catch_warnings():  # those that did not converge are counted
             warnings.simplefilter("ignore", UnconvergedWarning)
             roll = partial(job.bodies.roll, contact, (along, across), spin, speed=job.speed, rtol=job.rtol)

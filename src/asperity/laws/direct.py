@@ -135,6 +135,8 @@ class DirectOnPath:
     def __init__(
         self, law: Direct, half_space: HalfSpace, offsets: Array, other: DirectOnPath | None = None
     ) -> None:
+        from asperity.contact.pressed import block_of
+
         self.law = law
         self.half_space = half_space
         self.offsets = offsets
@@ -144,7 +146,7 @@ class DirectOnPath:
         none = np.zeros(half_space.shape)
         self._without = Edges(none + FAR, none, none, half_space.spacing)
         soft = half_space.softness(self._without) if self._sharp else None
-        self.block = half_space.block(heights, law.body, np.zeros(1), np.zeros(1), 0, law.rtol, soft=soft)
+        self.block = block_of(half_space, heights, law.body, np.zeros(1), np.zeros(1), 0, law.rtol, soft=soft)
         self.pressure, self.start = self.block.pressures[:, 0]
         self.counts = self.block.counts
         self.overlap = 0.0
@@ -164,6 +166,8 @@ class DirectOnPath:
 
     def settle(self, step: int, approach: float, compliance: float) -> float:
         """Elastic force, N, of bodies that yield to it by a compliance, m/N; approach without force, m."""
+        from asperity.contact.pressed import solve_block
+
         if self._step != step:
             self._heights = self._under(step)
             self._step = step
@@ -179,7 +183,7 @@ class DirectOnPath:
         space = self.half_space
         solved = int(self.counts[0])
         rtol = min(self.law.rtol, AT_REST) if self._last is None else self.law.rtol
-        space.solve_block(self.block._replace(compliance=compliance * space.cell_area, rtol=rtol))
+        solve_block(space, self.block._replace(compliance=compliance * space.cell_area, rtol=rtol))
         self._tried = True
         overlap = approach - float(self.block.room.lowest.min())
         if self.counts[0] == solved:

@@ -8,6 +8,7 @@ import numpy as np
 
 from asperity.arguments import Array, ArrayLike, positive, require
 from asperity.contact.halfspace import HalfSpace
+from asperity.contact.pressed import block_of, solve_block
 from asperity.contact.scan import Counts, total, warn_of_flaws
 from asperity.kernels.curves import (
     OVERLAP,
@@ -281,7 +282,7 @@ def stiffness_ensemble(
     cell = half_space.cell_area
 
     def load(sample: Array) -> tuple[Array, Array, Counts]:
-        block = half_space.solve_block(half_space.block(sample, body, np.zeros(1), approaches, 1, rtol))
+        block = solve_block(half_space, block_of(half_space, sample, body, np.zeros(1), approaches, 1, rtol))
         forces = cell * block.totals[:, 0]
         tangents = [
             half_space.tangent_stiffness(pressure, TANGENT) if force > 0.0 else 0.0

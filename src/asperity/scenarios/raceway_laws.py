@@ -14,6 +14,7 @@ from asperity.contact import scan
 from asperity.contact.batched import find_device
 from asperity.contact.halfspace import HalfSpace
 from asperity.contact.hertz import Hertz
+from asperity.contact.pressed import at_load
 from asperity.contact.scan import FORCE_ACCURACY, ScannedForces, rtol_for
 from asperity.errors import Grade, OutOfRangeWarning
 from asperity.kernels.curves import OVERLAP
@@ -247,12 +248,12 @@ class OnRaceway:
         """
         rtol = rtol_for(self.accuracy)
         start = None
-        smooth = self.space.at_load(self.shape.body, self.load, None, rtol).approach
+        smooth = at_load(self.space, self.shape.body, self.load, None, rtol).approach
         met = self._met(self.surface.damaged)
         felt = np.zeros(len(self.positions))
         for at in np.flatnonzero(met).tolist():
             gap, edges = self._over(at)
-            found = self.space.at_load(gap, self.load, start, rtol, edges)
+            found = at_load(self.space, gap, self.load, start, rtol, edges)
             felt[at] = smooth - found.approach
             start = found.pressure
         return np.interp(np.arange(self.rows), self.positions, felt, period=self.rows)
