@@ -93,7 +93,7 @@ def refuse_no_table(content: bytes, source: str, allowed: str) -> None:
             raise InputError(source, received, allowed, remedy)
 
 
-def decoded(content: bytes, source: str, allowed: str, *, latin: bool = False) -> str:
+def decoded(content: bytes, source: str, allowed: str, *, latin: bool) -> str:
     """Decode the content of a text file, UTF-8 or UTF-16, without the mark.
 
     Of another encoding an `InputError` says which it probably is; `source` and `allowed` are for that

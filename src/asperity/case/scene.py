@@ -350,7 +350,7 @@ class Case(RollingCase):
                 yield error.about(f"sideways: {error.what}")
 
 
-def _allowed(*, line: bool, samples: bool = True) -> list[str]:
+def _allowed(*, line: bool, samples: bool) -> list[str]:
     """Laws that can be rolled over a line, without or with samples of the surface."""
     return [
         name

@@ -339,7 +339,7 @@ DECIDED = ("laws", "law to take", "expected errors, dB", "runs", "work")
 """Rows of a plan that are told first: what is decided in the case, and the time that it takes."""
 
 
-def show_plan(case: AnyCase, source: str, *, every_key: bool = False) -> dict[str, Any]:
+def show_plan(case: AnyCase, source: str, *, every_key: bool) -> dict[str, Any]:
     """Print what is doubtful of a case, what will be computed, and the keys that it sets, or `every_key`.
 
     Returns what a program wants to know of it. An `InputError` says that the case cannot be computed.

@@ -27,7 +27,7 @@ MEASURED: Speed = "measured"
 CONTRADICTED: Speed = "contradicted"
 
 
-def part_name(part: str, element: str = "ball") -> str:
+def part_name(part: str, element: str) -> str:
     """A part of a bearing in which balls or rollers roll, as people say it."""
     return element if part == "ball" else NAMES[part]
 

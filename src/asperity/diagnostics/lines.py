@@ -163,7 +163,7 @@ def explained_lines(
     return found
 
 
-def clear_families(found: Mapping[str, LineFamily], least: float = 0.0) -> list[str]:
+def clear_families(found: Mapping[str, LineFamily], least: float) -> list[str]:
     """Names of the families that are there, in their order.
 
     Without those that are faint beside the clearest (`FAINT`), or whose fundamental is below `least`.

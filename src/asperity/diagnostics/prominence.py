@@ -101,8 +101,8 @@ class Prominence:
         envelopes: Iterable[Array],
         rate: float,
         width: float,
-        means: int = 1,
-        highest: float = np.inf,
+        means: int,
+        highest: float,
     ) -> "Prominence":
         """How far lines in the mean of so many envelopes, of one length and a band of a width, Hz, stand out,
         up to a highest frequency, Hz."""

@@ -43,7 +43,7 @@ def near_speed(each: Hypothesis, told: float) -> bool:
 
 
 def shaft_near(
-    record: BearingRecord, tones: Mapping[str, Tone], told: float, deepest: float = 0.0
+    record: BearingRecord, tones: Mapping[str, Tone], told: float, deepest: float
 ) -> tuple[float, float, tuple[float, ...]]:
     """Where near a speed lines of the shaft are clearest, Hz, how clear, and which other speeds, Hz, have
     them as well: those whose lines are clearer, or of which these are a part's; a multiple that leaves few of

@@ -113,7 +113,7 @@ def grouped_slopes(
     place: Array,
     high: Array,
     groups: Sequence[tuple[NDArray[np.int_], Flags]],
-    by: float = RUN_STEP,
+    by: float,
 ) -> Array:
     """Slopes of residuals (n, p) by differences of runs, some values moved at once.
 

@@ -46,7 +46,7 @@ def _plane_at(plane: StateTexture | None, positions: Array) -> Array:
 
 
 def on_table(
-    table: ForceTable, positions: ArrayLike, *, damping: float = 0.0, plane: StateTexture | None = None
+    table: ForceTable, positions: ArrayLike, *, damping: float, plane: StateTexture | None
 ) -> Prepared:
     """Lay out a law that looks the force up in a table, at positions (n,) of the contact, m.
 

@@ -25,7 +25,7 @@ def passed_points(
     forces: Array,
     positions: ArrayLike,
     points: ArrayLike,
-    settled: int = 0,
+    settled: int,
     progress: Progress | None = None,
 ) -> tuple[Array, Array]:
     """Displacement, m, and velocity, m/s, (runs, p, n), of the rail at fixed points under moving forces.

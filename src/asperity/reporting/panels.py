@@ -197,7 +197,7 @@ def narrow_levels(
     return smooth, [replace(s, values=level) for s, level in zip(found, levels, strict=True)]
 
 
-def spectrum_panel(tree: DataTree, label: str, levels: Sequence[Line], behind: Sequence[Mark] = ()) -> Panel:
+def spectrum_panel(tree: DataTree, label: str, levels: Sequence[Line], behind: Sequence[Mark]) -> Panel:
     """Levels over frequency, and other marks behind them."""
     axis = levels_axis(label, [line.y for line in levels])
     marks = (*shaded_bands(tree), *behind, *levels)

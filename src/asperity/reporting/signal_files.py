@@ -125,7 +125,7 @@ def _file_name(channel: Channel) -> str:
     return Sound(name, law, channel.about[2], channel.unit, channel.values).file_name
 
 
-def channels_of(tree: DataTree, what: str | None = None) -> list[Channel]:
+def channels_of(tree: DataTree, what: str | None) -> list[Channel]:
     """Signals of a run over time, and its power spectral densities: all that are usual, or a variable."""
     found = {str(each.name): each for each in _variables(tree)}
     usual = {name: each for name, each in found.items() if _of_what(each)[0] in USUAL}

@@ -194,7 +194,7 @@ def listen(result: DataTree, path: FilePath, *, what: str | None = None, matched
     return [folder / sound.file_name for sound in sounds]
 
 
-def sounds_of(tree: DataTree, what: str | None = None) -> list[Sound]:
+def sounds_of(tree: DataTree, what: str | None) -> list[Sound]:
     """Signals of a variable of the run in time, of each law and place."""
     found = _heard(tree)
     if what == PASS_BY and (pressure := pass_by_pressure(tree)) is not None:

@@ -73,9 +73,7 @@ def body_loads(bodies: Sequence[Body]) -> Array:
     return np.maximum(loads, mean) if len(loads) > 1 else loads
 
 
-def system_of(
-    ground: Ground, bodies: Sequence[Body], loads: Array, h: float, constant: Array = NONE
-) -> System:
+def system_of(ground: Ground, bodies: Sequence[Body], loads: Array, h: float, constant: Array) -> System:
     """Constants for the kernels, with contacts as they are.
 
     Scales of the contact forces (n,), N, time step, s, constant forces on the structure (s,).

@@ -80,7 +80,7 @@ def equilibrium(
     displaced: Array,
     scale: Array,
     laws: Evaluation,
-    relative: float = TOLERANCE,
+    relative: float,
 ) -> tuple[Array, Array, Array, Array]:
     """Coordinates x (d,) with K x + p = Aᵀ F, and forces, approaches and stiffnesses of the contacts (n,).
 
@@ -165,7 +165,7 @@ def set_down(
     system: System,
     prepared: Sequence[Prepared | SteppedLaw],
     *,
-    entering: bool = False,
+    entering: bool,
 ) -> tuple[Array, Motion]:
     """Stiffnesses of contacts at rest at the start of a run (n,), N/m, and the state from which it goes on.
 

@@ -51,7 +51,7 @@ def free_motion(body: Body) -> tuple[Array, float, float] | None:
 
 
 def refuse_missed_load(
-    name: str, force: Array, load: float, mass: float, reach: float, time_step: float, settled: int = 0
+    name: str, force: Array, load: float, mass: float, reach: float, time_step: float, settled: int
 ) -> None:
     """Refuse a run whose mean contact force misses the load by more than its standard error.
 

@@ -341,7 +341,7 @@ def filters_of(
     most: int,
     degree: int | None = None,
     order: int | None = None,
-    progress: Progress | None = None,
+    progress: Progress | None,
     lines: Sequence[HeightMap] | None = None,
 ) -> tuple[LineFilters, scan.Counts]:
     """Scan strips in some states, and design the filter of each normalisation, of so many taps at most.

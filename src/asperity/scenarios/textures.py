@@ -467,7 +467,7 @@ def path_of(
     seed: int,
     run_in: int,
     before: int,
-    continuation: str | None = None,
+    continuation: str | None,
 ) -> tuple[Strip, str]:
     """Take the path (rows, ny) from measured maps, and say how.
 

@@ -40,7 +40,7 @@ PART_NAMES = {
 }
 
 
-def bearing_sheet(name: str, keys: LoadKeys, run: DataTree | None = None) -> str:
+def bearing_sheet(name: str, keys: LoadKeys, run: DataTree | None) -> str:
     """Lay out the data sheet of a bearing under its load.
 
     Parameters

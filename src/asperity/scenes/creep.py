@@ -76,7 +76,7 @@ def rough_strips(of: PreparedCase) -> list[Array]:
     return [heights - stiffness.weighted_mean(middle_of(heights, nx), weights) for heights in rough]
 
 
-def states_of(prepared: PreparedCase, count: int, progress: Progress | None = None) -> TractionStates:
+def states_of(prepared: PreparedCase, count: int, progress: Progress | None) -> TractionStates:
     """State functions of tangential contact of a rough case, at `count` approaches.
 
     From where all samples carry a light load, and the smooth contact has some cells, to where one carries

@@ -28,7 +28,7 @@ FEWEST_POINTS = 16
 """Points of a segment of a line's spectrum, at least."""
 
 
-def surface_group(computed: Computed, *, brief: bool = False) -> Values:
+def surface_group(computed: Computed, *, brief: bool) -> Values:
     """Lay out the textures of a case: first sample, a piece of the path, its line.
 
     And, if not in brief, of the whole path spectrum and statistics.

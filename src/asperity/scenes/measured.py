@@ -116,7 +116,7 @@ class HammerTest:
         return np.nan_to_num(self.driven(other) / computed.driven(other), nan=1.0)
 
 
-def _lines_in(band: ArrayLike, count: int = LINES) -> Array:
+def _lines_in(band: ArrayLike, count: int) -> Array:
     """Frequencies of each band (b, count), even over lg f, Hz."""
     centre = as_row(band)
     steps = (np.arange(count) + 0.5) / count

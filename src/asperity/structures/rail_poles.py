@@ -94,7 +94,7 @@ class RailPoles:
         return self.weights(1 + wanted.shape[1])[:, 1:] - wanted
 
 
-def rail_poles(kernel: MovingKernel, count: int = 100, *, cache: Store | None = None) -> RailPoles:
+def rail_poles(kernel: MovingKernel, count: int, *, cache: Store | None = None) -> RailPoles:
     """Fit a moving kernel by common poles, both of each conjugate pair counted, and residues for every start.
 
     Their number is even, from 4 to `most_poles`. Poles by vector fitting of the transform on the unit circle,
@@ -124,7 +124,7 @@ def rail_poles(kernel: MovingKernel, count: int = 100, *, cache: Store | None = 
 
 
 def poles_or_kernel(
-    kernel: MovingKernel, most: int | None = None, *, cache: Store | None = None
+    kernel: MovingKernel, most: int | None, *, cache: Store | None = None
 ) -> RailPoles | MovingKernel:
     """Fit a moving kernel by poles, `POLES` of them by default, or as many as it has lags for.
 

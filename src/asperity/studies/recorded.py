@@ -90,7 +90,7 @@ def read_record(
     return Recorded(values, float(rate or 0.0), teller)
 
 
-def read_beside(path: Path, which: str, array: str | None = None) -> tuple[Array, str]:
+def read_beside(path: Path, which: str, array: str | None) -> tuple[Array, str]:
     """Read what was recorded beside a signal (n,), and its heading: of a column by number, or an array."""
     file = guards.readable_file(path, "signals")
     numbered = which.isdecimal()

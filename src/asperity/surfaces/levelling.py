@@ -151,7 +151,7 @@ def _resampled(lines: Array, old_step: float, new_step: float) -> Array:
     return spline((np.arange(count) + 0.5) * new_step)
 
 
-def without_polynomial(heights: Array, degree: int, *, into: Array | None = None) -> Array:
+def without_polynomial(heights: Array, degree: int, *, into: Array | None) -> Array:
     """Heights, m, less the least-squares polynomial of a total degree through the valid points.
 
     Written into an array, which may be that of the heights; into a new one by default. By normal equations,
