@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from asperity.arguments import Array, ArrayLike
+from asperity.quadrature import gauss
 
 PURE_ROLLING = 2.0 * math.sin(math.pi / 18.0)
 """Place across where a ball in a groove rolls purely, over the half axis: 0.347.
@@ -101,8 +102,7 @@ def sliding_speed(
         ∫ p |s| dA over Hertz's pressure p, with the creepage s = (ξ(y) − φ y, φ x).
     """
     Q, b, a, phi = np.broadcast_arrays(load, *half_axes, spin)
-    depth, weights = np.polynomial.legendre.leggauss(RADII)
-    depth, weights = 0.5 * (depth + 1.0), 0.5 * weights  # sqrt(1 − ρ²), of which ρ dρ is linear
+    depth, weights = gauss(RADII)  # sqrt(1 − ρ²), of which ρ dρ is linear
     around = 2.0 * np.pi * (np.arange(ANGLES) + 0.5) / ANGLES
     radius = np.sqrt(1.0 - depth**2)[:, None]
     x = b[..., None, None] * radius * np.cos(around)

@@ -11,6 +11,7 @@ import numpy as np
 from scipy.special import wofz
 
 from asperity.arguments import Array, ArrayLike, Complex, require
+from asperity.quadrature import gauss
 from asperity.radiation.pass_by import STEPS, AxleSource, Passage, Receiver, time_weighted
 from asperity.radiation.track import IMPEDANCE, SPEED_OF_SOUND, wavenumber
 from asperity.reference import cnossos
@@ -268,7 +269,6 @@ def _strength(azimuth: Array, elevation: Array, band: Array) -> Array:
 
 def _mean_strength(band: Array) -> Array:
     """Its mean over all directions above the ground (b, 1); all around a source sin²φ is ½ in the mean."""
-    node, weight = np.polynomial.legendre.leggauss(64)
-    elevation = 0.25 * np.pi * (node + 1.0)
+    elevation, weight = gauss(64, 0.0, 0.5 * np.pi)
     around = _strength(np.array(0.25 * np.pi), elevation, band) * np.cos(elevation)
-    return (0.25 * np.pi * around @ weight)[:, None]
+    return (around @ weight)[:, None]

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.special import h2vp, j1
 
 from asperity.arguments import Array, ArrayLike, Complex, finite_array, positive
+from asperity.quadrature import gauss
 from asperity.structures.lateral_rail import LateralTrack
 from asperity.structures.mobility import FEWEST_NODES, ForceOverBay, Mobility
 from asperity.structures.track import Track
@@ -313,11 +314,11 @@ def squared_lateral_mobility(
     spacing = track.track.sleeper_spacing
     edges = np.concatenate([[0.0], places, [spacing]])
     count = FEWEST_NODES + int(np.ceil(np.abs(waves.wavenumbers).max() * np.diff(edges).max()))
-    node, weight = (0.5 * each for each in np.polynomial.legendre.leggauss(count))
+    node, weight = gauss(count)
 
     def between(begin: float, end: float) -> Complex:
         """Integral of the products of motions by waves i and j over a piece of the bay, (f, i, j)."""
-        moved = waves.outgoing_at(0.5 * (begin + end) + (end - begin) * node)
+        moved = waves.outgoing_at(begin + (end - begin) * node)
         shares = (end - begin) * weight
         weighted = np.einsum("x,ab,fxbj->fxaj", shares, track.mean_squares, moved, optimize=True)
         first, second = (each.reshape(len(omega), -1, each.shape[-1]) for each in (moved, weighted))

@@ -29,6 +29,7 @@ from asperity.arguments import Array, ArrayLike, Flags, NDArray
 from asperity.errors import CoarseSamplingWarning, InputError, percent
 from asperity.kernels.pointforce import DRY, Prepared, evaluate_all
 from asperity.laws.spec import SteppedLaw
+from asperity.quadrature import gauss
 from asperity.structures.body import Body
 from asperity.written_numbers import engineering, rounded
 
@@ -179,9 +180,9 @@ def taken_by_dampers(body: Body, time_step: float) -> Array:
     size = float(np.abs(generator).sum(axis=1).max(initial=TAYLOR_RADIUS))
     doublings = max(0, int(np.ceil(np.log2(size / TAYLOR_RADIUS))))
     part = 0.5**doublings
-    places, weights = np.polynomial.legendre.leggauss(GAUSS_POINTS)
-    on_the_way = exponentials(generator * (0.5 * part * (1.0 + places))[:, None, None])
-    taken = np.einsum("n,nij,ik,nkl->jl", 0.5 * part * weights, on_the_way, power, on_the_way)
+    places, weights = gauss(GAUSS_POINTS, 0.0, part)
+    on_the_way = exponentials(generator * places[:, None, None])
+    taken = np.einsum("n,nij,ik,nkl->jl", weights, on_the_way, power, on_the_way)
     (step,) = exponentials(generator[None] * part)
     for _ in range(doublings):
         taken = taken + step.T @ taken @ step

@@ -9,11 +9,11 @@ from typing import Any, Self
 
 import numpy as np
 import scipy
-from numpy.polynomial.legendre import leggauss
 
 from asperity.arguments import Array, ArrayLike, as_row, one_of, positive, real, require
 from asperity.errors import InputError
 from asperity.kernels.curves import STRIDE, add_near_fields
+from asperity.quadrature import gauss
 from asperity.reference.materials import Material
 from asperity.structures.modal import Modal, Pieces, modal_receptance, pieces_of, shapes_at, turned_on
 from asperity.written_numbers import rounded
@@ -474,10 +474,10 @@ class SupportedBeam(_Uniform):
     def _energies(self, basis: "scipy.interpolate.BSpline") -> tuple[Array, Array]:
         """Matrices of mass and of bending stiffness, by Gauss's rule, which is exact for splines."""
         breaks = np.unique(self._knots)
-        nodes, weights = leggauss(DEGREE + 1)
-        half = 0.5 * np.diff(breaks)[:, None]
-        at = (breaks[:-1, None] + half * (1.0 + nodes)).ravel()
-        weight = (half * weights).ravel()[:, None]
+        nodes, weights = gauss(DEGREE + 1)
+        length = np.diff(breaks)[:, None]
+        at = (breaks[:-1, None] + length * nodes).ravel()
+        weight = (length * weights).ravel()[:, None]
         value = basis(at)
         bend = basis(at, nu=2)
         mass = self.mass_per_length * value.T @ (weight * value)

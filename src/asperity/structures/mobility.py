@@ -8,6 +8,7 @@ from functools import lru_cache
 import numpy as np
 
 from asperity.arguments import Array, ArrayLike, Complex, finite_array, real
+from asperity.quadrature import gauss
 from asperity.structures.cell_waves import CellWaves, cell_waves
 from asperity.structures.periodic_rail import PeriodicWaves
 from asperity.structures.support import BendingSleeper, MeasuredSleeper, Spring
@@ -37,12 +38,7 @@ class Mobility:
         self.edges = waves.edges
         shortest = float(np.abs(waves.wavenumbers).max())
         self.count = FEWEST_NODES + math.ceil(shortest * float(np.diff(waves.edges).max()))
-        self.nodes, self.weights = np.polynomial.legendre.leggauss(2 * self.count)
-
-    def gauss(self, begin: float, end: float) -> tuple[Array, Array]:
-        """Nodes and weights between two places."""
-        node, weight = np.polynomial.legendre.leggauss(self.count)
-        return begin + 0.5 * (end - begin) * (node + 1.0), 0.5 * (end - begin) * weight
+        self.nodes, self.weights = gauss(2 * self.count)
 
     def rail(self, force: ForceOverBay | None) -> Array:
         """Integral along the rail of the squared mobility (f,), mean over the places of the force."""
@@ -60,7 +56,7 @@ class Mobility:
             right, left = _sent(self.spans[number], x0)
             length = spans[number].spacing
             to_x0 = length * self._up_to(x0 / length)
-            shares = length * 0.5 * self.weights - to_x0, to_x0
+            shares = length * self.weights - to_x0, to_x0
             total = _squared(right, ahead[number]) + _squared(left, behind[number])
             for sent, shapes, share in zip((right, left), within(number), shares, strict=True):
                 moved = sent[0] * shapes[:, 0] + sent[1] * shapes[:, 1]
@@ -71,7 +67,7 @@ class Mobility:
 
     def _shapes(self, span: Span, waves: str) -> Complex:
         """Waves (nodes, 2, f) at nodes by which products of two are integrated from any place on."""
-        return np.array([getattr(span, waves)(0.5 * span.spacing * (x + 1.0)) for x in self.nodes])
+        return np.array([getattr(span, waves)(span.spacing * x) for x in self.nodes])
 
     def _up_to(self, place: float) -> Array:
         """Weights (nodes,) of an integral from zero to a place of a span, both in its lengths.
@@ -82,8 +78,8 @@ class Mobility:
         x = 2.0 * place - 1.0
         at = np.polynomial.legendre.legvander(np.array([x]), count)[0]
         integral = np.concatenate([[x + 1.0], at[2:] - at[:-2]])  # times 2k + 1, of each k below count
-        basis = np.polynomial.legendre.legvander(self.nodes, count - 1)
-        return 0.25 * self.weights * (basis @ integral)
+        basis = np.polynomial.legendre.legvander(2.0 * self.nodes - 1.0, count - 1)
+        return 0.5 * self.weights * (basis @ integral)
 
     def sleepers(self, track: Track, force: ForceOverBay | None) -> Array:
         """Sum over all half sleepers of the squared mobility (f,), mean over the places of the force."""
@@ -118,7 +114,7 @@ class Mobility:
         """Integrals of products of waves over each span (n, i, j, f)."""
         forms = []
         for span in spans:
-            places, lengths = self.gauss(0.0, span.spacing)
+            places, lengths = gauss(self.count, 0.0, span.spacing)
             shapes = np.array([getattr(span, waves)(x) for x in places])
             forms.append(np.einsum("x,xif,xjf->ijf", lengths, shapes, shapes.conj(), optimize=True))
         return np.array(forms)
@@ -145,7 +141,7 @@ class Mobility:
 
     def _mean(self, squares: Squares, force: ForceOverBay | None) -> Array:
         """Mean of ω² times squares, by the weights of Gauss's rule and of the force."""
-        places, lengths = zip(*(self.gauss(0.0, span.spacing) for span in self.spans), strict=True)
+        places, lengths = zip(*(gauss(self.count, 0.0, span.spacing) for span in self.spans), strict=True)
         values = np.array([squares(n, float(x)) for n, within in enumerate(places) for x in within])
         along = np.concatenate([edge + each for edge, each in zip(self.edges, places, strict=False)])
         square = 1.0 if force is None else force(along)

@@ -9,6 +9,7 @@ import numpy as np
 
 from asperity.arguments import Array, ArrayLike, Complex, Flags, finite_array
 from asperity.errors import InputError
+from asperity.quadrature import gauss
 from asperity.written_numbers import count_of, rounded
 
 
@@ -316,10 +317,10 @@ class BendingSleeper(Element):
         seat = 0.5 * self.seat_distance
         half = 0.5 * self.length
         most = float(np.abs(waves.wavenumber).max(initial=0.0))
-        node, weight = np.polynomial.legendre.leggauss(8 + math.ceil(most * half))
+        nodes, weights = gauss(8 + math.ceil(most * half))
         total = np.zeros(np.shape(waves.wavenumber))
         for begin, length in ((0.0, seat), (seat, half - seat)):
-            for at, share in zip(0.5 * (node + 1.0), 0.5 * weight, strict=True):
+            for at, share in zip(nodes, weights, strict=True):
                 total += length * share * value(begin + length * at)
         return total
 
