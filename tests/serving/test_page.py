@@ -19,8 +19,11 @@ pytest.importorskip("starlette", reason="the extra app is not installed")
 pytest.importorskip("uvicorn", reason="the extra app is not installed")
 
 import asperity
-from asperity.case.cases import read_case
+from asperity.case.cases import as_case, read_case
 from asperity.case.toml import toml_text
+from asperity.reporting.sound import listen
+from asperity.results import save
+from asperity.serving.stored_runs import keep_run
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the server is ended by signals")
 
@@ -101,15 +104,15 @@ def becomes(tab, name, state):
     tab.wait_for_selector(f"#run-list li[data-state={state}]:has-text('{name}')")
 
 
-def have_a_run(tab, tmp_path):
-    """A run of a body that is done, of an earlier test or of its own: of a bearing there is less to watch."""
-    tab.wait_for_selector("body[data-runs]")
-    done = tab.locator("#run-list li[data-state=done] a.name", has_not_text="three balls")
-    if done.count() == 0:
-        fill(tab, tmp_path, SMALL)
-        roll(tab, "a run")
-        becomes(tab, "a run", "done")
-    return done.first
+@pytest.fixture(scope="module")
+def kept(served):
+    """Folder of a run of a body that is done, as an earlier server left it."""
+    runs, case = served.folder / "runs", as_case(SMALL)
+    folder = runs / keep_run(runs, case.to_toml(), kind="ball-on-beam", name="a run", changed="")
+    tree = asperity.run(case)
+    listen(tree, folder / "sounds")
+    save(tree, folder / "run.nc")
+    return folder
 
 
 def number(tab, what):
@@ -216,8 +219,7 @@ def test_two_tabs_reload_cancel_and_go_on(tab, served, tmp_path):
     becomes(other, "first", "done")
 
 
-def test_a_run_is_watched_heard_compared_and_taken_away(tab, tmp_path):
-    have_a_run(tab, tmp_path)
+def test_a_run_is_watched_heard_compared_and_taken_away(kept, tab, tmp_path):
     fill(tab, tmp_path, SMALL | {"beam": {"loss_factor": 0.02}})
     roll(tab, "<b>second</b>")
     tab.wait_for_selector("#rolled progress")  # where Roll was pressed
@@ -280,9 +282,8 @@ def test_a_bearing_is_run_and_heard(tab, tmp_path):
     assert heard[0, 0, 1] > 1e-6
 
 
-def test_back_closes_a_run(tab, tmp_path):
-    have_a_run(tab, tmp_path)
-    tab.locator("#run-list li[data-state=done] a.name").first.click()
+def test_back_closes_a_run(kept, tab):
+    tab.click(f"#run-list a[href='#run={kept.name}']")
     tab.wait_for_selector("#run:not([hidden])")
     tab.go_back()
     tab.wait_for_selector("#run", state="hidden")
@@ -290,23 +291,34 @@ def test_back_closes_a_run(tab, tmp_path):
     tab.wait_for_selector("#run:not([hidden])")
 
 
-def test_a_report_can_ask_nothing_of_the_server(tab, served, tmp_path):
+def test_a_report_can_ask_nothing_of_the_server(kept, tab, served):
     """It is a file that somebody may have changed, and its address holds the token."""
-    have_a_run(tab, tmp_path)
-    (run,) = [each.parent for each in served.folder.glob("runs/*/run.nc")][:1]
     ask = "fetch('../../ask/runs').then(() => 'answered', () => 'refused').then((it) => document.title = it)"
-    (run / "report.html").write_text(f"<title>?</title><h1>A report</h1><script>{ask}</script>")
+    (kept / "report.html").write_text(f"<title>?</title><h1>A report</h1><script>{ask}</script>")
     opened = tab.context.new_page()
-    opened.goto(f"{served.address}runs/{run.name}/report.html")
+    opened.goto(f"{served.address}runs/{kept.name}/report.html")
     opened.wait_for_function("() => document.title !== '?'")
     assert opened.title() == "refused"
     assert opened.evaluate("() => self.origin") == "null"
 
 
+@pytest.mark.parametrize(
+    ("width", "scheme"), [(1280, "light"), pytest.param(360, "dark", marks=pytest.mark.long)]
+)
+def test_nothing_bars_anybody(kept, tab, width, scheme):
+    """The rules of axe-core, with a run that is done."""
+    tab.emulate_media(color_scheme=scheme)
+    tab.set_viewport_size({"width": width, "height": 800})
+    tab.click(f"#run-list a[href='#run={kept.name}']")
+    tab.wait_for_selector("#watch:not([hidden])")
+    assert_accessible(tab)
+    assert tab.evaluate("document.documentElement.scrollWidth <= innerWidth")
+
+
 @pytest.mark.parametrize("number", [pytest.param(signal.SIGINT, marks=pytest.mark.long), signal.SIGKILL])
-def test_a_server_that_ends_leaves_no_orphan_and_keeps_its_runs(tab, served, tmp_path, number):
+def test_a_server_that_ends_leaves_no_orphan_and_keeps_its_runs(kept, tab, served, tmp_path, number):
     """Quietly where it may end in order."""
-    have_a_run(tab, tmp_path)
+    tab.wait_for_selector("#run-list li[data-state=done]")
     done, name = tab.locator("#run-list li[data-state=done]").count(), f"a run until {number.name}"
     fill(tab, tmp_path, SMALL | {"seed": int(number)})
     roll(tab, name)
@@ -337,17 +349,3 @@ def left_of(processes):
     while (left := list(filter(runs, processes))) and time.monotonic() < deadline:
         time.sleep(0.05)
     return left
-
-
-@pytest.mark.parametrize(
-    ("width", "scheme"), [(1280, "light"), pytest.param(360, "dark", marks=pytest.mark.long)]
-)
-def test_nothing_bars_anybody(tab, tmp_path, width, scheme):
-    """The rules of axe-core, with a run that is done."""
-    run = have_a_run(tab, tmp_path)
-    tab.emulate_media(color_scheme=scheme)
-    tab.set_viewport_size({"width": width, "height": 800})
-    run.click()
-    tab.wait_for_selector("#watch:not([hidden])")
-    assert_accessible(tab)
-    assert tab.evaluate("document.documentElement.scrollWidth <= innerWidth")
