@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from itertools import accumulate
+
 
 def deal(app, env, names):
-    """Put pages with cells at even distances among the others."""
-    running = [name for name in names if "{code-cell}" in env.doc2path(name).read_text(encoding="utf-8")]
-    others = [name for name in names if name not in running]
-    place = {name: (n + 0.5) / len(pages) for pages in (running, others) for n, name in enumerate(pages)}
+    """Put pages with cells among the others so that equal parts of all pages have about as many cells."""
+    cells = {name: env.doc2path(name).read_text(encoding="utf-8").count("{code-cell}") for name in names}
+    others = [name for name in names if not cells[name]]
+    place = {name: (n + 0.5) / len(others) for n, name in enumerate(others)}
+    total = sum(cells.values())
+    for name, end in zip(names, accumulate(cells.values()), strict=True):
+        if cells[name]:
+            place[name] = (end - 0.5 * cells[name]) / total
     names.sort(key=place.__getitem__)
 
 
