@@ -203,3 +203,6 @@ def test_long_work_says_what_it_does():
     assert wanted <= set(seen)
     for steps in seen.values():
         assert steps[-1][0] == steps[-1][1]
+    scanned = seen["scanning the path"]  # of all states together, so that the time that is left does not jump
+    assert scanned == sorted(scanned)
+    assert len({total for _, total in scanned}) == 1

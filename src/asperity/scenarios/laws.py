@@ -140,15 +140,21 @@ class ReducedCase(PreparedCase):
     @cached_property
     def path_scan(self) -> ScannedForces:
         """The scan of the path, state after state: motions that visit others share them."""
-        scans = []
+        scans: list[ScannedForces] = []
+        count = self.scanned.stop - self.scanned.start
         shape, textures = self.of_heights
+
+        def tell(done: int, positions: int, message: str) -> None:
+            if self.progress is not None:
+                self.progress(len(scans) * positions + done, count * positions, message)
+
         for state in range(self.scanned.start, self.scanned.stop):
             job = ScanJob(
                 shape.half_space(self.case.contact.hardness), textures.surface, shape.body,
                 self._reduced.approaches[state], table_stride(self),
                 rtol_for(self.case.numerics.force_accuracy), self._scanned_planes, textures.before,
             )  # fmt: skip
-            told = {"progress": self.progress, "message": "scanning the path"}
+            told = {"progress": tell, "message": "scanning the path"}
             scans.append(scan_forces(job, mapped=True, cache=Store(), **told))
         scanned = joined_states(scans)
         warn_of_flaws(scanned.counts, "the path", reducing.SCAN_TOLERANCE, self._reduced.remedy)
