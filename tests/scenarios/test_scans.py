@@ -17,6 +17,7 @@ from asperity.scenarios.geometry import geometry_of
 from asperity.scenarios.preparing import Work, expect, scan_sizes, scans_of, try_contacts
 from asperity.scenarios.run_time import LAW, START, STEP
 from asperity.scenes.compute import compute
+from asperity.scenes.planning import plan
 from asperity.store import Store
 from asperity.surfaces.strip import Rows
 from one_contact import first_contact
@@ -143,6 +144,24 @@ def test_the_time_is_told_of_the_processor_and_on_the_clock(monkeypatch):
     )
     monkeypatch.setenv("ASPERITY_THREADS", "1")
     assert work.told == f"about 40 s of processor time, {most}"
+    assert replace(work, farther=19.0).told == work.told
+    lost = replace(work, farther=160.0).told
+    assert (
+        lost == f"about 40 s of processor time, up to 3 min where contact is lost or forces vary much, {most}"
+    )
+
+
+def test_the_time_is_told_for_a_motion_that_visits_all_states_of_the_path_as_well():
+    """A ball that loses contact took 87 s of its processor where 37 s were told."""
+    work = expect(prepared_of(laws=["table"]), quiet)
+    path = work.scans["path"]
+    assert (path.states + path.farther, path.states) == (reducing.STATES, 3)
+    assert work.solutions["scan for the path"] == path.most == path.positions * reducing.STATES
+    assert work.farther * 3.0 == pytest.approx(13.0 * work.time.parts["the scan for the path"])
+    rows = dict(plan(prepared_of(laws=["table"]), work))
+    assert rows["contact solutions, scan for the path"] == f"up to about {path.most}"
+    chosen = prepared_of(laws=["table"], contact={"approaches": ["0.5 um", "3 um"]})
+    assert expect(chosen, quiet).farther == 0.0
 
 
 def test_all_errors_come_at_once_and_a_single_one_as_it_is(monkeypatch):

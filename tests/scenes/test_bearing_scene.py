@@ -226,6 +226,16 @@ def test_surfaces_lie_on_the_cells_of_their_own_contacts():
     assert abs(inner / outer - 1.0) > 0.01
 
 
+def test_lines_that_do_not_stand_out_are_not_denied():
+    """What was asked of the envelope is told: a verdict of the signal may be sure of a part all the same."""
+    pit = {"on": "inner", "length": "0.05 mm", "depth": "1 nm"}
+    changes = {"radial": "0 N", "axial": "100 N", "fault": pit, "duration": "60 ms"}
+    told = asperity.run(BEARING | changes).attrs["verdict"]
+    words = "No part has a line 4 times above what is around it in the envelope, and two such multiples. "
+    assert words in told
+    assert "lines of" not in told
+
+
 def test_balls_differ_and_one_alone_has_the_fault():
     waves = {"balls": {"waviness": "10 nm"}, "fault": PIT | {"on": "ball"}}
     prepared = prepare_bearing(as_case(BEARING | waves))

@@ -12,6 +12,7 @@ import xarray
 from asperity.arguments import Array
 from asperity.case.ball_bearing import BearingUnderLoad
 from asperity.diagnostics import ISO_BANDS
+from asperity.diagnostics.lines import STANDS_OUT
 from asperity.errors import percent, warn_of_findings
 from asperity.progress import Progress
 from asperity.scenarios.prepared_bearing import (
@@ -112,6 +113,11 @@ def motion_group(computed: ComputedBearing) -> Values:
 
 # --- in one sentence
 
+NOTHING_STANDS_OUT = (
+    f"No part has a line {STANDS_OUT:g} times above what is around it in the envelope, and two such multiples"
+)
+"""Fainter lines of a fault are not denied: in a longer record, or with their side bands, they may be told."""
+
 
 def _verdict(case: BearingUnderLoad, heard: Values) -> str:
     """How quiet the bearing is, by what in each band, and which part is heard if it has faults.
@@ -137,8 +143,8 @@ def _verdict(case: BearingUnderLoad, heard: Values) -> str:
     lead = f"Radial velocity{first} by {law}: {told or 'no band is sampled'}"
     if not np.nan_to_num(velocities).any() and told:
         lead = f"Nothing vibrates by {law}: all {of.ELEMENT}s are carried alike, on surfaces without waves"
-    struck = f" Its envelope has lines of {f'the {parts}' if parts else 'no part'}." if case.faults else ""
-    return f"{lead}.{struck} {omitted_from(case)}"
+    struck = f"Its envelope has lines of the {parts}" if parts else NOTHING_STANDS_OUT
+    return f"{lead}. {f'{struck}. ' if case.faults else ''}{omitted_from(case)}"
 
 
 def _deciding(heard: Values) -> list[str]:

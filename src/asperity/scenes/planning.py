@@ -55,8 +55,11 @@ def plan(prepared: PreparedCase, work: Work, choice: LawChoice | None = None) ->
         share = f"about {100 * work.tried.pressed.area_ratio:.0f} % of the area of smooth bodies"
         rows.append(("real contact", share))
     rows += [*planned_roundness(prepared), *advised_law(prepared, choice)]
-    rows += [(f"contact solutions, {name}", f"at most {count}") for name, count in work.solutions.items()]
-    if scan := work.scans.get("path"):
+    scan = work.scans.get("path")
+    for name, count in work.solutions.items():
+        how = "up to about" if scan and scan.farther and name == "scan for the path" else "at most"
+        rows.append((f"contact solutions, {name}", f"{how} {count}"))
+    if scan:
         rows.append(("scan of the path", described_scan(scan)))
     return [*rows, ("work", work.told)]
 
