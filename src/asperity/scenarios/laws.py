@@ -1,7 +1,7 @@
 """What the laws of a case are made of: its textures and state functions."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from typing import Any, Self
 
@@ -42,6 +42,8 @@ class ReducedCase(PreparedCase):
     progress: Progress
     # states at which the path is scanned; None: those that a motion is expected to visit
     states: slice | None = None
+    # scans of the path by their states, which those have in common that are scanned for other motions
+    scans: dict[int, ScannedForces] = field(default_factory=dict)
 
     def of_contact(self, contact: int, load: float) -> "ReducedCase":
         """Those of another contact of the same bodies, by whose texture it bears and its load, N."""
@@ -49,7 +51,7 @@ class ReducedCase(PreparedCase):
         shape = replace(self.shape, load=load)
         path = textures.averaged.path
         planes = None if path is None else reducing.patch_planes(path, self.shape)
-        return replace(self, textures=textures, shape=shape, planes=planes)
+        return replace(self, textures=textures, shape=shape, planes=planes, scans={})
 
     def build(self, name: str) -> Law:
         """Build a law of the case by its name, on positions along the path, m."""
@@ -140,25 +142,28 @@ class ReducedCase(PreparedCase):
     @cached_property
     def path_scan(self) -> ScannedForces:
         """The scan of the path, state after state: motions that visit others share them."""
-        scans: list[ScannedForces] = []
-        count = self.scanned.stop - self.scanned.start
-        shape, textures = self.of_heights
-
-        def tell(done: int, positions: int, message: str) -> None:
-            if self.progress is not None:
-                self.progress(len(scans) * positions + done, count * positions, message)
-
-        for state in range(self.scanned.start, self.scanned.stop):
-            job = ScanJob(
-                shape.half_space(self.case.contact.hardness), textures.surface, shape.body,
-                self._reduced.approaches[state], table_stride(self),
-                rtol_for(self.case.numerics.force_accuracy), self._scanned_planes, textures.before,
-            )  # fmt: skip
-            told = {"progress": tell, "message": "scanning the path"}
-            scans.append(scan_forces(job, mapped=True, cache=Store(), **told))
-        scanned = joined_states(scans)
+        states = range(self.scanned.start, self.scanned.stop)
+        unknown = [state for state in states if state not in self.scans]
+        for which, state in enumerate(unknown):
+            self.scans[state] = self._scan_of(state, partial(self._tell, which, len(unknown)))
+        scanned = joined_states([self.scans[state] for state in states])
         warn_of_flaws(scanned.counts, "the path", reducing.SCAN_TOLERANCE, self._reduced.remedy)
         return scanned
+
+    def _tell(self, which: int, count: int, done: int, positions: int, message: str) -> None:
+        """Tell of one of so many scans as of a part of all."""
+        if self.progress is not None:
+            self.progress(which * positions + done, count * positions, message)
+
+    def _scan_of(self, state: int, progress: Progress) -> ScannedForces:
+        shape, textures = self.of_heights
+        job = ScanJob(
+            shape.half_space(self.case.contact.hardness), textures.surface, shape.body,
+            self._reduced.approaches[state], table_stride(self),
+            rtol_for(self.case.numerics.force_accuracy), self._scanned_planes, textures.before,
+        )  # fmt: skip
+        told = {"progress": progress, "message": "scanning the path"}
+        return scan_forces(job, mapped=True, cache=Store(), **told)
 
     @property
     def _scanned_planes(self) -> Array:
