@@ -11,7 +11,7 @@ from asperity.laws.layout import force
 from asperity.laws.table import Table
 from asperity.reduction.stiffness import ForceTable
 from asperity.running import prepare_case
-from asperity.scenarios import reducing, scanned_states
+from asperity.scenarios import laws, reducing, scanned_states
 from asperity.scenarios.preparing import scans_of
 from asperity.scenarios.scanned_states import states_around
 from asperity.scenes.compute import compute
@@ -64,7 +64,12 @@ def rolled(monkeypatch, case, expected):
 def test_a_motion_that_leaves_what_was_scanned_is_rolled_anew_over_more(own_cache, monkeypatch, name):
     case = changed("ball-on-beam", **ROLLED[name])
     every, whole = rolled(monkeypatch, case, (0.0, 1e9))
+    asked: list[float] = []
+    monkeypatch.setattr(
+        laws, "scan_forces", lambda job, **how: asked.append(job.approaches[0]) or scan_forces(job, **how)
+    )
     few, states = rolled(monkeypatch, case, (0.98, 1.02))
+    assert sorted(asked) == few.reduction.approaches[states].tolist()  # each once
     assert whole == slice(0, len(every.reduction.approaches))
     assert states.start > 0 if name == "held down" else states.start == 0
     assert few.scan.forces.shape[0] == states.stop - states.start < whole.stop
