@@ -20,6 +20,7 @@ from pathlib import Path
 import numpy as np
 
 from asperity.diagnostics import diagnose
+from asperity.diagnostics.diagnosis import EVEN, RESOLVED
 from asperity.structures.ball_bearing import BallBearing
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
@@ -283,6 +284,27 @@ def table(rows) -> None:
             print(f"named, {said}: {len(own)}, mean {mean:.0f} %, right {right}")
 
 
+def no_sign(rows) -> None:
+    """Print how often a bearing is sound of which no sign of a fault is told, as if half of all had one, and
+    four of five speeds were right."""
+    struck = Counter((bool(row["part"]), row["asked"] == "right") for row in rows)
+    share = {key: (0.8 if key[1] else 0.2) / count for key, count in struck.items()}
+    for kind in ("sound", "nothing"):
+        own = [
+            row for row in rows if row["said"] == "not" and row["basis"] == kind and row["turns"] >= RESOLVED
+        ]
+        for even in (True, False):  # of those that something may hide in, and others
+            told = [row for row in own if (row["confidence"] <= EVEN) is even]
+            if not told:
+                continue
+            weight = np.array([share[bool(row["part"]), row["asked"] == "right"] for row in told])
+            sound = np.array([not row["part"] for row in told])
+            mean = 100.0 * np.average([row["confidence"] for row in told], weights=weight)
+            right = 100.0 * np.average(sound, weights=weight)
+            count = f"{sum(sound)} of {len(told)}"
+            print(f"no sign ({kind}), {mean:.0f} % sure: {count} sound, {right:.0f} % with half faulty")
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--seed", type=int, required=True)
@@ -294,6 +316,7 @@ def main() -> None:
     if chosen.rows:
         chosen.rows.write_text(json.dumps(rows, default=float))
     table(rows)
+    no_sign(rows)
 
 
 if __name__ == "__main__":

@@ -15,6 +15,7 @@ from small_cases import COARSE
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 import bearing_fit_intervals
+import bearing_machines
 import measured_bearings as bearings
 import measured_railway as railway
 import railway_by_hand
@@ -313,3 +314,29 @@ def test_a_grid_of_runs_gives_the_nearest_or_what_lies_between():
 def test_coverage_counts_intervals_that_hold_the_load():
     found = [(100.0, 100.0, (90.0, 110.0)), (100.0, 150.0, (120.0, 200.0)), (100.0, 99.0, None)]
     assert bearing_fit_intervals.coverage(found).startswith("1 of 3 (33.3 %)")
+
+
+def test_no_sign_of_a_fault_is_counted_as_if_half_of_all_had_one_and_four_of_five_speeds_were_right(capsys):
+    """Of three records with a fault in four at the right speed one is silent, and all sound ones are."""
+    about = {"basis": "sound", "turns": 50.0, "confidence": 0.86, "asked": "right"}
+    rows = [about | {"part": "outer", "said": "not" if n == 0 else "rightly"} for n in range(4)]
+    rows += [about | {"part": None, "said": "not"} for _ in range(2)]
+    rows += [each | {"asked": asked, "said": "rightly"} for each in rows for asked in ("near", "wrong")]
+    bearing_machines.no_sign(rows)
+    assert capsys.readouterr().out == "no sign (sound), 86 % sure: 2 of 3 sound, 80 % with half faulty\n"
+
+
+@pytest.mark.long
+def test_of_verdicts_that_there_is_no_fault_as_many_are_right_as_they_say():
+    """Machines of a seed by which nothing was set: within two standard deviations of their number."""
+    rows = list(bearing_machines.asked(bearing_machines.KINDS, 1203, 2))
+    for kind in ("sound", "nothing"):
+        own = [
+            row for row in rows if row["said"] == "not" and row["basis"] == kind and row["confidence"] > 0.5
+        ]
+        silent = [sum(bool(row["part"]) is struck for row in own) for struck in (True, False)]
+        shares = [count / sum(bool(row["part"]) is struck for row in rows)
+                  for count, struck in zip(silent, (True, False), strict=True)]  # fmt: skip
+        right = shares[1] / sum(shares)
+        said = np.mean([row["confidence"] for row in own])
+        assert abs(right - said) < 2.0 * np.sqrt(said * (1.0 - said) / min(silent)), (kind, right, said)

@@ -225,7 +225,7 @@ SOUND = Diagnosis(30.0, 30.0, "confirmed", (), (), None, 0.0, (), BASIS, 0.25, S
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        ({}, "No lines of rings or balls stand out: no sign of a fault, 83 % sure."),
+        ({}, "No lines of rings or balls stand out: no sign of a fault, 83 % sure that there is none."),
         (
             {"parts": (OUTER,)},
             "There are lines of the outer ring at 107.7 Hz, resolved to 0.25 Hz: 83 % sure.",
@@ -281,7 +281,7 @@ SOUND = Diagnosis(30.0, 30.0, "confirmed", (), (), None, 0.0, (), BASIS, 0.25, S
             {"speed_is": "unconfirmed"},
             "The line of the shaft is not found at 30 Hz (1800 1/min): the speed is not confirmed. No "
             "lines of rings or "
-            "balls stand out: no sign of a fault if it is right, 83 % sure.",
+            "balls stand out: no sign of a fault if it is right, 83 % sure that there is none.",
         ),
         (
             {
@@ -308,7 +308,7 @@ SOUND = Diagnosis(30.0, 30.0, "confirmed", (), (), None, 0.0, (), BASIS, 0.25, S
             {"speed_is": "unconfirmed", "others": (15.0, 60.0)},
             "Lines of the shaft are at 30 Hz (1800 1/min); a shaft at 15 Hz (900 1/min) or 60 Hz (3600 "
             "1/min) would have them, too. No lines of rings or balls stand out: no sign of a fault, "
-            "83 % sure.",
+            "83 % sure that there is none.",
         ),
         (
             {"parts": (OUTER,), "speed_is": "unconfirmed", "record": SimpleNamespace(duration=0.1)},
@@ -323,8 +323,8 @@ SOUND = Diagnosis(30.0, 30.0, "confirmed", (), (), None, 0.0, (), BASIS, 0.25, S
         ),
         (
             {"doubts": ("The signal is clipped at 1.",)},
-            "No lines of rings or balls stand out: no sign of a fault, 83 % sure. The signal is clipped at "
-            "1.",
+            "No lines of rings or balls stand out: no sign of a fault, 83 % sure that there is none. The "
+            "signal is clipped at 1.",
         ),
     ],
 )
@@ -343,7 +343,7 @@ def test_each_kind_of_verdict_says_the_speed_first_then_the_part_and_how_sure(ch
     ("pulses", "change", "said"),
     [
         (0, {}, "By the tacho the shaft turns at 30 Hz (1800 1/min) on average. No lines of rings or balls "
-         "stand out: no sign of a fault, 83 % sure."),
+         "stand out: no sign of a fault, 83 % sure that there is none."),
         (60, {"parts": (OUTER,)}, "By the tacho the shaft turns at 30 Hz (1800 1/min) on average. There are "
          "lines of the outer ring at 107.7 Hz, resolved to 0.25 Hz: 83 % sure."),
         (0, {"parts": (OUTER,), "speed_is": "unconfirmed"}, "By the tacho the shaft turns at 30 Hz (1800 "
@@ -353,13 +353,14 @@ def test_each_kind_of_verdict_says_the_speed_first_then_the_part_and_how_sure(ch
          "at 107.7 Hz, resolved to 0.25 Hz: 83 % sure."),
         (1, {"speed_is": "unconfirmed"}, "By the tacho the shaft turns at 30 Hz (1800 1/min) on average, if "
          "it gives 1 pulse in a turn. No lines of rings or balls stand out: no sign of a fault if it does, "
-         "83 % sure."),
+         "83 % sure that there is none."),
         (0, {"speed_is": "unconfirmed", "others": (15.0, 60.0)}, "By the tacho the shaft turns at 30 Hz "
-         "(1800 1/min) on average. No lines of rings or balls stand out: no sign of a fault, 83 % sure."),
+         "(1800 1/min) on average. No lines of rings or balls stand out: no sign of a fault, 83 % sure that "
+         "there is none."),
         (2, {"speed_is": "unconfirmed", "others": (15.0, 60.0)}, "By the tacho the shaft turns at 30 Hz "
          "(1800 1/min) on average, if it gives 2 pulses in a turn; a shaft at 15 Hz (900 1/min) or 60 Hz "
          "(3600 1/min) would have its lines, too. No lines of rings or balls stand out: no sign of a fault, "
-         "83 % sure."),
+         "83 % sure that there is none."),
         (2, {"parts": (OUTER,), "speed_is": "contradicted", "told": 15.0, "blows": 107.7}, "The line of the "
          "shaft is not at 15 Hz (900 1/min), as the tacho says, but at 30 Hz (1800 1/min), as with 1 pulse "
          "in a turn: does the tacho give 2 pulses in a turn, and is it on this shaft? At that speed there "

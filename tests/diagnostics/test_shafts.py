@@ -5,6 +5,7 @@ import pytest
 from scipy.signal import resample, resample_poly
 
 from asperity.diagnostics import Hypothesis, diagnose, diagnosis_sentence
+from asperity.diagnostics.confidence import Basis
 from asperity.diagnostics.decision import _side_band
 from asperity.diagnostics.shaft import has_own_lines, of_shaft_or_mains
 from asperity.structures.ball_bearing import BallBearing
@@ -90,6 +91,7 @@ def test_side_bands_of_another_bearing_are_no_part_of_this_one():
         found = diagnose(signal, RATE, TONES["6205"], SPEED)
         assert not found.parts
         assert found.blows == pytest.approx(orders((7, 0.30), 0.14)["inner"] * SPEED, rel=0.01)
+        assert found.basis == Basis("blows", found.turns)  # not that of a sound bearing
 
 
 def test_a_record_that_a_rub_may_hide_a_fault_in_says_so_and_is_no_surer_than_even():

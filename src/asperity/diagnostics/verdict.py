@@ -208,4 +208,4 @@ def _of_parts(found: Diagnosis) -> str:
     condition = "" if found.speed_is == "confirmed" or found.others else f" {condition}".rstrip()
     parts = f"rings or {found.element}s"
     hidden = f"{ONCE_IN_A_TURN} " if found.once_in_a_turn else ""
-    return f"{hidden}No lines of {parts} stand out: no sign of a fault{condition}, {sure}."
+    return f"{hidden}No lines of {parts} stand out: no sign of a fault{condition}, {sure} that there is none."
