@@ -1,9 +1,11 @@
 """The command line as tests call it, in this process or as a program of its own, and small cases for it."""
 
+import html
 import os
+import re
 import subprocess
 import sys
-from contextlib import contextmanager
+from contextlib import chdir, contextmanager
 
 import numpy as np
 import pytest
@@ -52,6 +54,19 @@ def program(*words, code=0, script=PROGRAM, **environment):
     )  # fmt: skip
     assert done.returncode == code, done.stderr
     return done
+
+
+def made_again(page, folder, *words):
+    """Save the files that a page shows under Make it again, and call its command, with further words."""
+    told = page.read_text("utf-8").partition('<h2 id="remake">')[2]
+    command, *texts = map(html.unescape, re.findall(r"<pre[^>]*>(.*?)</pre>", told, re.DOTALL))
+    folder.mkdir()
+    for name, text in zip(re.findall(r"<code>(.*?)</code>", told), texts, strict=True):
+        (folder / name).write_text(text, "utf-8")
+    program, *rest = command.split()
+    assert program == "asperity"
+    with chdir(folder):
+        return call(*rest, *words)
 
 
 def words_of(said):

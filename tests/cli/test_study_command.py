@@ -16,7 +16,7 @@ import xarray as xr
 import asperity
 from asperity.cli.studying import defined
 from asperity.studies.definition import load_study, study_of
-from command_line import RAIL, SMALL, call, words_of, working_in
+from command_line import RAIL, SMALL, call, made_again, words_of, working_in
 from small_cases import changed
 
 pytestmark = pytest.mark.usefixtures("members_in_this_process")
@@ -225,6 +225,24 @@ def test_variants_are_told_by_what_they_do():
     assert again["sweep"]["variant"]["calm"] == {"surface.level": "minus 30 dB"}
     Path("study.toml").write_text(VARIANTS.replace("30 dB", "10 dB"))
     assert "the study.nc of another study" in call(*AGAIN, code=2).stderr
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [
+        ("case.toml", "--vary", "seed = 1, 2", "--draw", "speed = 0.8..1.2 m/s"),
+        ("study.toml",),
+    ],
+)
+def test_a_page_tells_how_its_study_is_made_again(asked):
+    """The command that stands there computes the same, in a folder that holds the files that stand there."""
+    Path("case.toml").write_text(SMALL)
+    variants = 'case = "case.toml"\n[sweep.variant.slow]\nspeed = "times 0.8"\n"ball.load" = "6 N"\n'
+    Path("study.toml").write_text(variants)
+    call("study", *asked, "-o", "out", "--workers", "1")
+    made_again(Path("out/study.html"), Path("again"), "-o", "out", "--workers", "1")
+    for first in Path("out").glob("*.csv"):
+        assert first.read_bytes() == (Path("again/out") / first.name).read_bytes()
 
 
 def test_variants_of_a_case_that_fails_are_compared_with_nothing():

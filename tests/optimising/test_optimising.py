@@ -22,7 +22,7 @@ from asperity.optimising import running
 from asperity.optimising.allocation import Limits, Trial, rms_of, search
 from asperity.written_numbers import signed
 from browser import assert_accessible, pages_of
-from command_line import words_of
+from command_line import made_again, words_of
 from small_cases import COARSE, WHEEL
 
 pytestmark = pytest.mark.usefixtures("cache_of_module")
@@ -78,6 +78,12 @@ def test_it_beats_the_start_by_table_with_its_limit_active(folder):
 def test_nothing_on_its_page_bars_anybody(folder, browser):
     with pages_of(browser, (folder[0] / "bands.html").as_uri()) as opened:
         assert_accessible(opened(390))
+
+
+def test_its_page_tells_how_its_texture_is_found_again(folder, tmp_path):
+    made_again(folder[0] / "bands.html", tmp_path / "again", "-o", "out", "--no-report")
+    for name in ("bands.csv", "texture.csv"):
+        assert (tmp_path / "again" / "out" / name).read_bytes() == (folder[0] / name).read_bytes()
 
 
 def test_its_document_and_its_page_are_what_the_documentation_says(folder):

@@ -8,8 +8,9 @@ from typing import Any
 
 from asperity import files
 from asperity.case import toml
-from asperity.case.any_case import function_named
-from asperity.case.form import content, file_digest, in_toml
+from asperity.case.any_case import AnyCase, function_named
+from asperity.case.beside import refused
+from asperity.case.form import Section, content, file_digest, in_toml
 from asperity.cli.commands import mark_of, refuse_other_case, require_writable
 from asperity.cli.running import warn, warnings_of
 from asperity.optimising.definition import load_aim
@@ -65,7 +66,7 @@ def run_optimisation(
         found = searched(case, aim, progress)
         told: ToldOptimisation = function_named(optimisation_of(case).told_by)(found)
         with files.together(directory, last=FILES["case"]) as new:
-            _written(found, told, new, report=report)
+            _written(found, told, _remake(case, aim), new, report=report)
             keys = in_toml(found.case, in_memory=lambda *_: FILES["texture"])
             text = toml.toml_text({"kind": found.case.kind, **keys})
             files.write_bytes(new / FILES["case"], f"{mark_of('texture', asked, text)}{text}".encode())
@@ -83,7 +84,16 @@ def run_optimisation(
     }
 
 
-def _written(found: Any, told: ToldOptimisation, directory: Path, *, report: bool) -> None:
+def _remake(case: AnyCase, aim: Section) -> page.Remake:
+    """Case and aim as files that find the same texture."""
+    asked = toml.toml_text({"case": "case.toml", **in_toml(aim, in_memory=refused)})
+    texts = {"case.toml": case.to_toml(), "optimisation.toml": asked}
+    return page.Remake("asperity optimise optimisation.toml", texts)
+
+
+def _written(
+    found: Any, told: ToldOptimisation, remake: page.Remake, directory: Path, *, report: bool
+) -> None:
     """Write the runs before and after, with their reports, and all that is said of what was found."""
     for what, tree in (("before", found.result_before), ("after", found.result_after)):
         run = save(tree, directory / FILES[what])
@@ -96,5 +106,5 @@ def _written(found: Any, told: ToldOptimisation, directory: Path, *, report: boo
     links["case"] = FILES["case"]
     if report:
         links |= {f"report {what}": f"{what}/{REPORT}" for what in ("before", "after")}
-    text = page.figures_page(told.title, capital(found.sentence), told.blocks, links)
+    text = page.figures_page(told.title, capital(found.sentence), told.blocks, links, remake)
     files.write_bytes(directory / FILES["page"], text.encode())

@@ -12,6 +12,7 @@ import xarray
 
 from asperity import files
 from asperity.arguments import require, shown
+from asperity.case.toml import toml_text
 from asperity.cli.commands import require_writable, taken_folder
 from asperity.errors import CaseError, InputError
 from asperity.laws import spec_of
@@ -24,7 +25,7 @@ from asperity.results import attributes_of, save
 from asperity.scenes.figures.effects import Effects, effects_table
 from asperity.schema.spectra import FORCE_LEVEL
 from asperity.studies import table as tables
-from asperity.studies.axes import VARIANT
+from asperity.studies.axes import AS_IT_IS, VARIANT
 from asperity.studies.definition import Study, load_study, separated, study_of
 from asperity.studies.effects import effects, judged_levels, what_helps
 from asperity.studies.ensemble import FEWEST, SEED, mean_and_scatter, prediction_band
@@ -224,13 +225,21 @@ def _write(
             names["page"] = PAGE
             beside = {words: names[what] for what, words in OFFERED.items() if what in names}
             lead = (told and told[0][1].best) or _summary(table, mean)
-            text = page.figures_page("Study", lead, blocks, beside)
+            text = page.figures_page("Study", lead, blocks, beside, _remake(table))
             files.write_bytes(new / PAGE, text.encode())
         for name in {MEANS, BAND, EFFECTS, PAGE} - set(names.values()):  # of an earlier study
             files.discard(directory / name)
     written = {what: directory / name for what, name in names.items()}
     say_files(written)
     return written
+
+
+def _remake(table: xarray.Dataset) -> page.Remake:
+    """The study as files that compute it again, whether it was one or a case with options."""
+    study = {name: keys for name in ("sweep", "draw") if (keys := json.loads(table.attrs[name]))}
+    study["sweep"].get(VARIANT, {}).pop(AS_IT_IS, None)  # which every study of variants has
+    texts = {"case.toml": table.attrs["case"], "study.toml": toml_text({"case": "case.toml", **study})}
+    return page.Remake("asperity study study.toml", texts)
 
 
 def _summary(table: xarray.Dataset, mean: xarray.Dataset) -> str:

@@ -77,13 +77,27 @@ def page_template(name: str, package: str = "asperity.reporting") -> Template:
     return environment.get_template(name)
 
 
-def figures_page(title: str, summary: str, blocks: Sequence[Block], files: Mapping[str, str]) -> str:
+@dataclass(frozen=True)
+class Remake:
+    """How what a page shows is computed again: a command, and the texts of its files by their names."""
+
+    command: str
+    files: Mapping[str, str]
+
+
+def figures_page(
+    title: str,
+    summary: str,
+    blocks: Sequence[Block],
+    files: Mapping[str, str],
+    remake: Remake | None = None,
+) -> str:
     """A page of figures and tables as one self-contained HTML text, with links to files by what they are."""
     figures = (block for block in blocks if isinstance(block, PageFigure))
     marks = (mark for figure in figures for panel in figure.chart.panels for mark in panel.marks)
     colours = data.page_colours(mark.colour for mark in marks if isinstance(mark, Line) and mark.law)
     told = {"title": title, "summary": summary, "version": __version__, "files": files, "blocks": blocks}
-    return whole_page("figures.html.jinja", blocks, colours, **told)
+    return whole_page("figures.html.jinja", blocks, colours, **told, remake=remake)
 
 
 # --- the page of a result
