@@ -120,6 +120,13 @@ def test_modes_of_the_wheel_follow_both_forces(runs):
     wheel = RadiatingWheel(0.46, 0.135, *(np.append(*each) for each in parts))
     power = 2.0 * wheel.power(frequency, np.abs(answers) ** 2 * moved).sum(axis=0) * force[0] / 1e-12
     assert_levels(of_part(tree["spectra"], "wheel"), frequency, power, band, 350.0)
+    pushed = np.mean(spread * np.abs(shapes[1, :, None, None] * share) ** 2, axis=1)
+    power = 2.0 * wheel.power(frequency, np.abs(answers) ** 2 * pushed).sum(axis=0) * force[0] / 1e-12
+    alone = tree["spectra"]["single_force_power_level"].values[0, 1]
+    assert_levels(alone, frequency, power, band, 350.0)
+    low = (band > 70.0) & (band < 110.0)  # where most of it is the rigid motion along the axle
+    expected = 10.0 * np.log10(band_energies(frequency, power, band / HALF_BAND, band * HALF_BAND))
+    np.testing.assert_allclose(alone[low], expected[low], atol=0.4)
 
 
 def test_twice_as_far_off_on_the_other_side_it_is_twice_as_much_and_slips_on_ice(runs, off):
