@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from asperity.kernels.options import INNER, LOOP, ONCE, REASSOCIATE, compiled
 from asperity.kernels.pointforce import (
     ITERATIONS,
+    TABLE,
     Prepared,
     SeriesFilm,
     evaluate,
@@ -30,6 +31,10 @@ SETTLED = 4.0 * FORCE_TOLERANCE
 """Change of a force over a sweep, of itself plus the load, that counts as none."""
 NEAR = 0.1
 """Share of a force by which it may differ from its guess where one step of Newton's is enough at first."""
+STRAIGHT_SWEEPS = 3
+"""Sweeps after which laws are taken as straight until what contacts do to each other has settled."""
+STRAIGHT = 1e-5
+"""Share by which an elastic force may change on a straight line: what it misses is of second order."""
 MISSED, FOUND, AS_GUESSED = range(3)
 """How the force of one contact was found, with the others held."""
 OVER_DAMPING, BODY_DAMPING, CONTACT_DAMPING, THROUGHPUT, CONTACT_WORK, SLOPE_WORK = range(6)
@@ -84,6 +89,10 @@ class Motion(NamedTuple):
     rail_now: NDArray  # (p,), displacement of the rail for unit force at the end of the step, m/N
     trial: NDArray  # (n,), forces at the end of the step, as far as they are known, N
     compliance: NDArray  # (n,), of structure, body and softening at the contact in a step, m/N
+    free: NDArray  # (n,), approach for zero force, m, for which `trial` was found
+    # (4, n), of laws that are taken as straight: how the force rises with that approach, N/m; the approach at
+    # which they were evaluated, how far they are straight there, m, and their stiffness, N/m; else zero
+    straight: NDArray
     rate: NDArray  # (n,), of the approach, on a rail of the body alone, m/s
     climb: NDArray  # (n,), on the slope of the structure, m/s
     power: NDArray  # (POWERS,), now, W
@@ -103,9 +112,22 @@ class Histories(NamedTuple):
     displacement: NDArray  # (sensors, t), m; without rows where it is not asked for
 
 
+class Found(NamedTuple):
+    """What was found of the force of one contact, with those of the others held."""
+
+    force: float  # N
+    elastic: float  # its elastic part, N
+    evaluations: int
+    how: int  # `MISSED`, `FOUND` or `AS_GUESSED`
+    straight: tuple[float, float, float, float]  # as in `Motion`
+
+
+CURVED = (0.0, 0.0, 0.0, 0.0)
+
+
 @compiled(**INNER)
 def solve_law(evaluate, law, film, step, free, load, guess, damping, in_flight, relative, again):  # type: ignore[no-untyped-def]
-    """Contact force at the end of a step, N, its elastic part, evaluations of the law, how it was found.
+    """Contact force at the end of a step.
 
     ``evaluate(law, step, approach)`` gives elastic force and stiffness of bodies that a film keeps
     apart, `damping`, N s/m, and `in_flight` are of `with_damping`. `free` is from `free_of`, `load` the scale
@@ -129,16 +151,21 @@ def solve_law(evaluate, law, film, step, free, load, guess, damping, in_flight, 
         # the last term is what rounding leaves of the approach
         limit = relative * compliance * (abs(force) + load) + 1e-15 * abs(free_approach)
         if abs(residual) <= limit:
-            return force, elastic, iteration + 1, FOUND if iteration else AS_GUESSED
+            return Found(force, elastic, iteration + 1, FOUND if iteration else AS_GUESSED, CURVED)
         slope = 1.0 - thinner * firm + compliance * stiffness
         if again and iteration == 0 and abs(residual) <= NEAR * compliance * force:
             closer = -residual / max(slope, 1.0)
-            return force + stiffness * closer, elastic + firm * closer, 1, FOUND
+            engaged = damping * rate_compliance  # a damper feels how fast the free approach rises, too
+            rise = stiffness + (1.0 - thinner * firm) * engaged / (compliance * (1.0 + engaged))
+            reach = STRAIGHT * elastic / firm if film.thickness == 0.0 else 0.0
+            straight = rise / slope, approach, reach, firm / (1.0 - thinner * firm)
+            return Found(force + stiffness * closer, elastic + firm * closer, 1, FOUND, straight)
         low, high, approach = refine(low, high, approach, residual, slope, iteration)
         if damping > 0.0 and abs(high - low) <= limit:
             # a damper engages with a jump: the force lies inside it
-            return (free_approach + apart - approach) / compliance, elastic, iteration + 1, FOUND
-    return (free_approach + apart - approach) / compliance, elastic, ITERATIONS, MISSED
+            inside = (free_approach + apart - approach) / compliance
+            return Found(inside, elastic, iteration + 1, FOUND, CURVED)
+    return Found((free_approach + apart - approach) / compliance, elastic, ITERATIONS, MISSED, CURVED)
 
 
 @compiled(**INNER)
@@ -152,10 +179,15 @@ def solve_prepared(laws, k, step, free, load, guess, again):  # type: ignore[no-
         stack.bilateral[k], stack.datum[k], stack.damping[k], stack.damped_in_flight[k], stack.upper[k],
         SeriesFilm(stack.film[k, 0], stack.film[k, 1], stack.film[k, 2]),
     )  # fmt: skip
-    return solve_law(
+    found = solve_law(
         evaluate, law, law.film, step, free, load, guess, law.damping, law.damped_in_flight, FORCE_TOLERANCE,
         again,
     )  # fmt: skip
+    rise, place, reach, firm = found.straight
+    if law.form != TABLE:  # where the texture of the next state comes in, laws have a kink
+        for i in range(states):
+            reach = min(reach, abs(law.states[i] - (place - law.planes[step])))
+    return Found(found.force, found.elastic, found.evaluations, found.how, (rise, place, reach, firm))
 
 
 @compiled(**INNER, **REASSOCIATE)
@@ -236,6 +268,15 @@ def press(system, motion, shapes, k, change):  # type: ignore[no-untyped-def]
     press_rail(system.channels, motion, k, change)
 
 
+@compiled(**INNER, **REASSOCIATE)
+def free_approach(system, motion, shapes, k):  # type: ignore[no-untyped-def]
+    """Approach of one contact for zero force at the end of a step, m, with the forces of the others held."""
+    apart = motion.rail_ahead[k] + product(shapes[k], motion.ahead, 0)
+    apart += product(system.shapes[k], motion.ahead, first_mode(system, shapes, k))
+    apart += product(system.core_shapes[k], motion.core_ahead[system.body[k]], 0)
+    return (motion.compliance[k] - system.softening[k]) * motion.trial[k] - apart
+
+
 @compiled(**ONCE)
 def free_of(system, motion, shapes, k):  # type: ignore[no-untyped-def]
     """What `solve_law` needs of one contact while the forces of the others stay.
@@ -243,29 +284,53 @@ def free_of(system, motion, shapes, k):  # type: ignore[no-untyped-def]
     Approach, m, and its rate, m/s, for zero force at the end of the step, and how much they fall per force
     there, m/N and m/(s N). The rate is the backward difference of second order, which damps at any step.
     """
-    apart = motion.rail_ahead[k] + product(shapes[k], motion.ahead, 0)
-    apart += product(system.shapes[k], motion.ahead, first_mode(system, shapes, k))
-    apart += product(system.core_shapes[k], motion.core_ahead[system.body[k]], 0)
     h = system.time_step
     compliance = motion.compliance[k]
-    approach = (compliance - system.softening[k]) * motion.trial[k] - apart
+    approach = free_approach(system, motion, shapes, k)
     rate = (1.5 * approach - 2.0 * motion.approach[0, k] + 0.5 * motion.approach[1, k]) / h
     return approach, rate, compliance, 1.5 * compliance / h
 
 
 @compiled(**ONCE)
-def take(system, motion, shapes, k, sweep, found):  # type: ignore[no-untyped-def]
+def take(system, motion, shapes, k, sweep, free, found):  # type: ignore[no-untyped-def]
     """Take the force that a contact has found, N; whether it had been right before."""
-    force, elastic, evaluations, how = found
     before = motion.trial[k]
-    motion.counts[2] += evaluations
-    motion.elastic[k] = elastic
-    if sweep > 0 and how == AS_GUESSED:
+    motion.counts[2] += found.evaluations
+    motion.elastic[k] = found.elastic
+    motion.free[k] = free
+    for i in range(len(found.straight)):
+        motion.straight[i, k] = found.straight[i]
+    if sweep > 0 and found.how == AS_GUESSED:
         return True  # law and displacements agree as they stand
-    press(system, motion, shapes, k, force - before)
-    motion.trial[k] = force
-    close = abs(force - before) <= SETTLED * (abs(before) + system.loads[k])
-    return how != MISSED and (close or not system.coupled)
+    press(system, motion, shapes, k, found.force - before)
+    motion.trial[k] = found.force
+    close = abs(found.force - before) <= SETTLED * (abs(before) + system.loads[k])
+    return found.how != MISSED and (close or not system.coupled)
+
+
+@compiled(**ONCE)
+def straighten(system, motion, shapes):  # type: ignore[no-untyped-def]
+    """Let forces settle by laws that are straight where they were evaluated; whether they are that far."""
+    for _ in range(SWEEPS):
+        settled = True
+        for k in range(motion.trial.shape[0]):
+            free = free_approach(system, motion, shapes, k)
+            closer = free - motion.free[k]
+            change = motion.straight[0, k] * closer
+            motion.free[k] = free
+            motion.elastic[k] += motion.straight[3, k] * (closer - motion.compliance[k] * change)
+            press(system, motion, shapes, k, change)
+            motion.trial[k] += change
+            if abs(change) > FORCE_TOLERANCE * (abs(motion.trial[k]) + system.loads[k]):
+                settled = False
+        if settled:
+            break
+    reached = settled
+    for k in range(motion.trial.shape[0]):
+        moved = motion.free[k] - motion.compliance[k] * motion.trial[k] - motion.straight[1, k]
+        if not abs(moved) < motion.straight[2, k]:
+            reached = False
+    return reached
 
 
 @compiled(**INNER, **REASSOCIATE)
@@ -276,12 +341,16 @@ def solve_contacts(solve, system, motion, laws, row, shapes):  # type: ignore[no
     """
     for sweep in range(SWEEPS):
         settled = True
+        straight = False
         for k in range(motion.trial.shape[0]):
             free = free_of(system, motion, shapes, k)
             found = solve(laws, k, row, free, system.loads[k], motion.trial[k], system.coupled)
-            settled = take(system, motion, shapes, k, sweep, found) and settled
+            settled = take(system, motion, shapes, k, sweep, free[0], found) and settled
+            straight = straight or found.straight[0] > 0.0
         if settled or not system.coupled:
             return settled
+        if straight and sweep < STRAIGHT_SWEEPS and straighten(system, motion, shapes):
+            return True
     return False
 
 

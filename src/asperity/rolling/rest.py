@@ -300,9 +300,16 @@ def at_zero(system: System) -> Motion:
     n = len(system.loads)
     p = len(system.channels.source)
     shapes: dict[str, Any] = dict.fromkeys(("displacement", "velocity", "push", "ahead"), m)
-    shapes |= dict.fromkeys(("elastic", "rail_ahead", "trial", "compliance", "rate", "climb"), n)
+    shapes |= dict.fromkeys(("elastic", "rail_ahead", "trial", "compliance", "free", "rate", "climb"), n)
     shapes |= dict.fromkeys(("core", "core_ahead"), system.core_pressed.shape)
-    shapes |= {"force": (4, n), "approach": (2, n), "power": POWERS, "ledger": 6, "rail_now": p}
+    shapes |= {
+        "force": (4, n),
+        "approach": (2, n),
+        "straight": (4, n),
+        "power": POWERS,
+        "ledger": 6,
+        "rail_now": p,
+    }
     shapes |= {"rail": (p, system.channels.decay.shape[1])}
     shapes |= {"ring": (n, system.channels.scattered.shape[2] if p else 0)}
     arrays = {name: np.zeros(shape) for name, shape in shapes.items()}

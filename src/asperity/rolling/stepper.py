@@ -17,7 +17,6 @@ from asperity.store import Checkpoint
 from asperity.written_numbers import rounded
 
 Free = tuple[float, float, float, float]
-Found = tuple[float, float, int, int]
 STEPPED_BLOCK = 8  # steps between looks at the clock when a law is evaluated from Python
 SAVE_EVERY = 10.0  # s
 STEPPED_TOLERANCE = 1e-6  # of the force plus the load; a law stepped from Python iterates itself
@@ -167,7 +166,7 @@ class Stepper:
 
     def _solve(
         self, laws: Any, k: int, row: int, free: Free, load: float, guess: float, again: bool
-    ) -> Found:
+    ) -> stepping.Found:
         """As `asperity.kernels.stepping.solve_prepared`, by any law.
 
         One that settles with the bodies does without iteration, but where its damper engages or lets go.
@@ -180,7 +179,7 @@ class Stepper:
             return solve(evaluate, law, law.film, row, free, load, guess, *how)
         step = self.offset + row
         if settles(law) and (settled := _settled(law, step, free, damping)) is not None:
-            return *settled, 1, stepping.FOUND
+            return stepping.Found(*settled, 1, stepping.FOUND, stepping.CURVED)
         return solve(_evaluate, law, DRY, step, free, load, guess, damping, False, STEPPED_TOLERANCE, False)
 
     def _ran_away(self) -> ComputationError:
