@@ -225,6 +225,69 @@ def test_the_window_that_is_chosen_holds_the_contact_of_measured_sections():
     assert sharp.contact.spacing <= min(geometry_of(sharp).semi_axes) / 8.0
 
 
+# --- heights as tables print them
+
+
+def rounded_to(step, shape, spacing, lift):
+    y = np.arange(-40e-3, 40.01e-3, spacing)
+    heights = shape(y) + lift
+    return Profile(step * np.rint(heights / step) if step else heights, spacing, "", -40e-3)
+
+
+def met_of(step, radius, spacing, draw):
+    """A cone of 1:40 on a head, each lifted by some share of a millimetre, shifted by up to 3 mm."""
+    lifts = draw.uniform(0.0, 1e-3, 2)
+    cone = rounded_to(step, lambda y: -y / 40.0, spacing, lifts[0])
+    head = rounded_to(step, lambda y: np.sqrt(radius**2 - y**2) - radius, spacing, lifts[1])
+    case = case_of(cone, head, rail_inclination="1:40", wheel_shift=draw.uniform(-3e-3, 3e-3))
+    return across.meeting_of(case, 1e-3), case
+
+
+@pytest.mark.parametrize(("step", "radius"), [(1e-5, 0.3), (5e-6, 0.6), (1e-6, 0.6)])
+@pytest.mark.parametrize("spacing", [0.25e-3, 1e-3, 2e-3])
+def test_rounding_leaves_a_contact_as_uncertain_as_is_told(step, radius, spacing):
+    """By drawn sections of which the radius is known: by up to so much, at two standard deviations."""
+    draw = np.random.default_rng(1)
+    exact, case = met_of(0.0, radius, spacing, draw)
+    load = case.rolling.contact_load
+    smooth = exact.osculating(case.smooth_contact, load)
+    assert smooth.radius_y == pytest.approx(radius, rel=0.01)
+    half = smooth.semi_axes(smooth.approach(load))[1]
+    found = [met_of(step, radius, spacing, draw)[0].osculating(smooth, load) for _ in range(20)]
+    off = 2.0 * np.sqrt(np.mean([(radius / each.radius_y - 1.0) ** 2 for each in found]))
+    printed_too = met_of(step, radius, spacing, draw)[0]
+    told = printed_too.uncertain(half) / (0.5 * half**2 / radius)
+    steps = [each.step for each in (printed_too.tread, printed_too.head)]
+    count = np.count_nonzero(steps)  # a cone may fall by whole steps
+    depth = 2.0 * step * np.sqrt(count * 45.0 / (48.0 * 2.0 * half / spacing))
+    assert told == pytest.approx(depth / (0.5 * half**2 / radius))
+    assert 0.2 * told < off < 1.1 * told
+
+
+@pytest.mark.parametrize(("step", "told"), [(1e-4, "0.1 mm"), (1e-5, None), (1e-6, None), (0.0, None)])
+def test_sections_that_are_printed_too_coarsely_say_so_in_the_check(step, told):
+    _, case = met_of(step, 0.3, 1e-3, np.random.default_rng(5))
+    with PhysicsWarning.caught() as caught:
+        geometry_of(case)
+    said = [str(each.message) for each in caught if "printed" in str(each.message)]
+    assert len(said) == (told is not None)
+    if told:
+        assert re.fullmatch(
+            f"wheel.profile and track.rail_profile: positions printed to {told} leave the radius of the "
+            r"contact across the path, [\d.]+ mm, uncertain (by up to \d+ %|altogether): the gap is [\d.]+ "
+            "µm deep where they touch. Take tables with more digits.",
+            said[0],
+        )
+
+
+def test_a_plane_a_cone_and_computed_heights_are_not_taken_for_printed_ones():
+    y = np.arange(-40e-3, 40.01e-3, 1e-3)
+    assert [across.printed_step(each) for each in (0.0 * y, -y / 10.0, y**2)] == [0.0, 0.0, 1e-6]
+    assert across.printed_step(np.sqrt(0.3**2 - y**2)) == 0.0
+    for step in across.PRINTED:
+        assert across.printed_step(step * np.rint(y**2 / 1e-4)) == step
+
+
 # --- a wheel and a rail as standards print them
 
 Y, ACROSS = np.arange(-65.0, 60.01, 0.25), np.arange(-33.0, 33.01, 0.25)

@@ -59,6 +59,10 @@ HOLLOW = 2e-3
 """By how much more a rail lies above its middle than below it, m, where it is upside down."""
 COMPARED = 200
 """Points of a section whose slopes are compared pair by pair."""
+PRINTED = (1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5, 1e-5, 5e-6, 2e-6, 1e-6)
+"""Steps of heights, m, that tables are printed in."""
+UNCERTAIN = 0.5
+"""Share of the radius of a contact from which on it is told that printed heights leave it uncertain."""
 SETTLED = 10
 """Times that the parabola of a gap is fitted to the width of the contact that follows."""
 
@@ -245,6 +249,8 @@ class Lying:
     measured: bool = True  # or a circle
     doubts: tuple[str, ...] = ()  # what is hardly meant, in sentences
     is_the_other: bool = False  # whether it has the shape of what it touches
+    step: float = 0.0  # of its heights as printed, m; 0 where they are not
+    spacing: float = 0.0  # of its points, m; 0 of a circle
 
 
 @dataclass(frozen=True, eq=False)
@@ -266,6 +272,32 @@ class Meeting:
     def doubts(self) -> tuple[str, ...]:
         """What is hardly meant of both, in sentences."""
         return self.tread.doubts + self.head.doubts
+
+    def uncertain(self, half: float) -> float:
+        """By how much the depth of the gap across a contact of a half width, m, is off at most, m, by printed
+        heights.
+
+        Two standard deviations of a parabola through n points, five or more, whose errors, of the variance
+        q²/12 of a step q, know nothing of one another: that of its depth is q²/12 · 45/(4 n). Those of a
+        smooth section partly do, and cancel: it is off by a fourth of that to all of it.
+        """
+        variance = sum(each.step**2 * each.spacing / (2.0 * half) for each in (self.tread, self.head))
+        return 2.0 * math.sqrt(45.0 / 48.0 * variance)
+
+    def doubt_of_printed(self, radius: float, half: float, keys: str) -> str:
+        """Say where printed heights leave the radius of the gap across a contact, m, of a half width, m,
+        uncertain; else nothing."""
+        depth = 0.5 * half**2 / radius
+        share = self.uncertain(half) / depth
+        if share < UNCERTAIN:
+            return ""
+        off = f"by up to {rounded(100.0 * share, 2)} %" if share < 1.0 else "altogether"
+        printed = told_length(max(self.tread.step, self.head.step))
+        return (
+            f"{keys}: positions printed to {printed} leave the radius of the contact across the path, "
+            f"{rounded(1e3 * radius)} mm, uncertain {off}: the gap is {rounded(1e6 * depth, 2)} µm deep "
+            "where they touch. Take tables with more digits."
+        )
 
     def gap(self, across: Array) -> Array:
         """Gap (n,), m, at places across (n,), m from the contact."""
@@ -321,6 +353,18 @@ class Meeting:
         return cls(tread, head, float(found), float(inside))
 
 
+def printed_step(heights: Array) -> float:
+    """Step of heights (n,), m, that all are multiples of, as tables print them; 0 where there is none.
+
+    A plane and a cone may be so by their shape.
+    """
+    for step in PRINTED:
+        whole = np.rint(heights / step)
+        if (np.abs(heights / step - whole) <= 1e-6 * np.maximum(np.abs(whole), 1.0)).all():
+            return step if np.ptp(np.diff(whole)) else 0.0
+    return 0.0
+
+
 def _circle(radius: float) -> tuple[Array, Array]:
     """Section of a circle, m: places and heights from its highest point."""
     y: Any = min(REACH, SHARE * radius) * np.linspace(-1.0, 1.0, POINTS)
@@ -364,6 +408,8 @@ def _lying(
     flange of a tread or the corners of a head.
     """
     turned = False
+    step = 0.0
+    spacing = 0.0
     way = 0
     doubts = list[str]()
     others = list[str]()
@@ -373,6 +419,8 @@ def _lying(
         with PhysicsWarning.caught() as caught:  # it is read as often as it is looked at, and told once
             section = read_section(measured, key)
         doubts += [str(each.message) for each in caught]
+        step = printed_step(section.heights)
+        spacing = section.spacing
         y = _places_of(section)
         way, side = (0, 0) if head else flange_of(y, section.heights)
         turned = _is_head_down(y, section.heights) if head else way < 0
@@ -395,7 +443,8 @@ def _lying(
     remedy = next(iter(doubts), "Leave flanks out that are as steep, and check the units.")
     require((np.diff(across) > 0.0).all(), key, "a section that overhangs", allowed, remedy)
     spline = scipy.interpolate.make_interp_spline(across, np.column_stack([depth, y]), k=3)
-    return Lying(spline, turned, way != 0, measured is not None, tuple(doubts), bool(others))
+    known = measured is not None
+    return Lying(spline, turned, way != 0, known, tuple(doubts), bool(others), step, spacing)
 
 
 def meeting_of(case: RollingCase, clear: float | None = None) -> Meeting:

@@ -246,4 +246,6 @@ def _measured_gap(case: scene.Case, met: across.Meeting, hertz: Hertz, load: flo
         require(curvature > 0.0, both, received, allowed)
         hertz = replace(hertz, radius_y=float(0.5 / curvature))
         half = hertz.semi_axes(hertz.approach(load))[1]
+    if doubt := met.doubt_of_printed(hertz.radius_y, half, both):
+        OutOfRangeWarning.warn(doubt)
     return gap, hertz
