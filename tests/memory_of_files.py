@@ -15,7 +15,7 @@ def times_of_file(path, write, evaluate):
     shorter."""
     peaks = []
     sizes = []
-    for count in (20_000, 100_000, 300_000):  # the first for imports
+    for count in (20_000, 200_000, 600_000):  # the first for imports
         write(path, np.random.default_rng(0).integers(-9_999, 10_000, count, dtype=np.int16))
         sizes.append(path.stat().st_size)
         tracemalloc.start()

@@ -196,8 +196,8 @@ def test_a_column_of_single_digits_takes_five_times_its_file(monkeypatch):
     files takes more than the other."""
     for module in ("levelling", "statistics", "measured_lines"):
         name = "TOGETHER" if module == "measured_lines" else "PIECE"
-        monkeypatch.setattr(f"asperity.surfaces.{module}.{name}", 2**12)
-    monkeypatch.setattr("asperity.ranks.TOGETHER", 2**12)
+        monkeypatch.setattr(f"asperity.surfaces.{module}.{name}", 2**14)
+    monkeypatch.setattr("asperity.ranks.TOGETHER", 2**14)
     monkeypatch.setattr("asperity.surfaces.readers.belief.MOST_POINTS", 2**12)
     monkeypatch.setattr("asperity.spectra.LONGEST_SEGMENT", 2**14)
     monkeypatch.setattr("asperity.spectra.ROUND", 2**8)
