@@ -4,7 +4,7 @@ import itertools
 import math
 
 import numpy as np
-from scipy.special import gamma, hankel2, jv, rgamma
+from scipy.special import gamma, hankel2, rgamma, spherical_jn
 
 _FARTHEST = 4000.0
 
@@ -13,7 +13,8 @@ def axial_ratio(order, ka, terms=12):
     """Sound power over ρ c 2πa² ⟨v²⟩ of a disc whose axial velocity goes as r^n cos(nθ), of radius one.
 
     The jump of pressure is r^n √(1 − r²) P_m(r²) with Jacobi's polynomials, whose Hankel transforms are
-    ζ^(-3/2) J_{n+2m+3/2}(ζ); Galerkin's equations with the admittance √(ζ² − k²) of the half-space.
+    ζ^(-3/2) J_{n+2m+3/2}(ζ), by spherical functions √(2/π)/ζ j_{n+2m+1}(ζ); Galerkin's equations with the
+    admittance √(ζ² − k²) of the half-space.
     """
     node, weight = np.polynomial.legendre.leggauss(60)
     angle = 0.25 * np.pi * (node + 1.0)
@@ -27,7 +28,7 @@ def axial_ratio(order, ka, terms=12):
         root.append(u + 0j)
     zeta, share, root = (np.concatenate(each) for each in (zeta, share, root))
     number = np.arange(terms)
-    shapes = np.array([zeta**-1.5 * jv(order + 2 * m + 1.5, zeta) for m in number])
+    shapes = np.sqrt(2.0 / np.pi) / zeta * spherical_jn(order + 2 * number[:, None] + 1, zeta)
     sign = (-1.0) ** number
     stiffness = (shapes * (share * zeta * root)) @ shapes.T + np.outer(sign, sign) / (np.pi * _FARTHEST)
     moved = np.array([_both(order + 1.0, order + 2 * m + 1.5, 1.5) for m in number])
