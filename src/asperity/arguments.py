@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     Flags = NDArray[np.bool_]
     Indices = NDArray[np.intp]
     Integers = NDArray[np.int64]
+    Numbers = NDArray[np.inexact]
 else:  # names alone: help() would spell out what NumPy makes of them, in a hundred words
     ArrayLike = NewType("ArrayLike", object)
     Array = NewType("Array", np.ndarray)
@@ -40,6 +41,7 @@ else:  # names alone: help() would spell out what NumPy makes of them, in a hund
     Flags = NewType("Flags", np.ndarray)
     Indices = NewType("Indices", np.ndarray)
     Integers = NewType("Integers", np.ndarray)
+    Numbers = NewType("Numbers", np.ndarray)
 
 
 def as_row(values: "ArrayLike") -> "Array":

@@ -3,6 +3,7 @@
 import doctest
 import inspect
 import pkgutil
+import pydoc
 from importlib import import_module
 
 import pytest
@@ -65,3 +66,5 @@ def test_help_names_arrays_in_a_word():
                 count += "ArrayLike" in told
                 assert "numpy._typing" not in told, f"{module}: {thing}"
     assert count > 20
+    for thing in filter(callable, (getattr(asperity, name) for name in asperity.__all__)):
+        assert "numpy.dtype[" not in pydoc.render_doc(thing, renderer=pydoc.plaintext), thing

@@ -6,7 +6,7 @@ from functools import lru_cache
 import numpy as np
 
 from asperity import arguments
-from asperity.arguments import Array, ArrayLike, NDArray, real, require, shown
+from asperity.arguments import Array, ArrayLike, Flags, real, require, shown
 from asperity.contact.edges import Softness, softness_at
 from asperity.contact.periodic_influence import BOUNDARIES, lifted_table, stiffness_of_lifted
 from asperity.errors import Outcome, UnconvergedWarning
@@ -136,7 +136,7 @@ class ElasticGrid:
         stiffness = float(rise.sum()) * self.cell_area
         return stiffness_of_lifted(stiffness, self.lift, self.cell_area) if self.lift else stiffness
 
-    def _stiffness_with_rims(self, pressure: Array, free: NDArray[np.bool_], rtol: float) -> float:
+    def _stiffness_with_rims(self, pressure: Array, free: Flags, rtol: float) -> float:
         """Tangent stiffness where the gap at rims falls with the pressure: its matrix is not symmetric."""
         from scipy.sparse.linalg import LinearOperator, gmres
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, NDArray, finite_array, real
+from asperity.arguments import Array, ArrayLike, Flags, finite_array, real
 from asperity.contact.elastic_grid import ElasticGrid
 from asperity.contact.solved import Contact
 from asperity.errors import Outcome
@@ -125,7 +125,7 @@ class SlidingContact:
     normal: Contact = field(repr=False)
     traction: Array = field(repr=False)
     slip: Array = field(repr=False)
-    sticks: NDArray[np.bool_] = field(repr=False)
+    sticks: Flags = field(repr=False)
     bound: Array = field(repr=False)
     creepage: tuple[float, float, float]
     speed: float

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from asperity.arguments import MOST_PASSES, SHAKEDOWN, Array, NDArray
+from asperity.arguments import MOST_PASSES, SHAKEDOWN, Array, Flags, NDArray
 from asperity.contact.elastic_grid import ElasticGrid
 from asperity.contact.pressed import at_load
 from asperity.contact.scan import Counts, total, warn_of_flaws
@@ -62,7 +62,7 @@ class RunInHeights:
 
     heights: Array  # (n, ny), m, peaks positive
     lowering: Array  # (n, ny), by which places have been lowered for good, m, never negative
-    touched: NDArray[np.bool_]  # (n, ny), places that have carried pressure
+    touched: Flags  # (n, ny), places that have carried pressure
     largest: Array  # (passes,), largest lowering of a place in each pass, m
     yielded_share: float  # of the touched area, in all passes together
     settled: bool  # whether the last pass lowered no place by more than the tolerance

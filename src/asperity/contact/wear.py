@@ -9,7 +9,19 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, NDArray, finite_array, positive, real, require, two, whole
+from asperity.arguments import (
+    Array,
+    ArrayLike,
+    Flags,
+    Indices,
+    Integers,
+    finite_array,
+    positive,
+    real,
+    require,
+    two,
+    whole,
+)
 from asperity.contact.friction import SlidingContact, cell_places
 from asperity.contact.pressed import at_load
 from asperity.contact.scan import Counts, check_settings, check_window, heights_on, total, warn_of_flaws
@@ -67,7 +79,7 @@ def rubbing(rolling: FrictionalHalfSpace, contact: SlidingContact, before: Slidi
 class WearLaw(Protocol):
     """What rubbing takes from one of the bodies: a frozen dataclass, whose fields name what is kept."""
 
-    def removal(self, rubbing: Rubbing) -> tuple[Array, NDArray[np.intp]]:
+    def removal(self, rubbing: Rubbing) -> tuple[Array, Indices]:
         """Depth over rolled distance (nx, ny), and the place in `REGIMES` of each cell (nx, ny)."""
 
 
@@ -122,7 +134,7 @@ class EnergyWear:
             self.onset >= least, "onset", f"{self.onset:g} Pa", f"at least the {least:.4g} Pa of {allowed}"
         )
 
-    def removal(self, rubbing: Rubbing) -> tuple[Array, NDArray[np.intp]]:
+    def removal(self, rubbing: Rubbing) -> tuple[Array, Indices]:
         """As in `WearLaw`."""
         work = rubbing.work
         beyond = self.catastrophic * np.maximum(work - self.onset, 0.0)
@@ -181,7 +193,7 @@ class ArchardWear:
             "velocities", self.velocities, "rising velocities of at least 0, m/s", rising=True, at_least=0.0
         )
 
-    def removal(self, rubbing: Rubbing) -> tuple[Array, NDArray[np.intp]]:
+    def removal(self, rubbing: Rubbing) -> tuple[Array, Indices]:
         """As in `WearLaw`."""
         slow, fast = (each / rubbing.speed for each in self.velocities)
         limit = self.limit * self.hardness
@@ -199,7 +211,7 @@ _STRIPS = (np.arange(8) - 3.5) / 8
 """Middles of strips of a cell, of whose shares above a limit the mean is taken."""
 
 
-def _share_above(values: Array, limit: float, touching: NDArray[np.bool_]) -> Array:
+def _share_above(values: Array, limit: float, touching: Flags) -> Array:
     """Share of each cell (nx, ny) in which a quantity exceeds a limit, if it is linear across the cell."""
     rises = [_rise(values, touching, axis) for axis in (0, 1)]
     steep = np.maximum(*rises)
@@ -209,7 +221,7 @@ def _share_above(values: Array, limit: float, touching: NDArray[np.bool_]) -> Ar
     return np.where(steep > 0.0, np.clip(0.5 + level, 0.0, 1.0).mean(axis=-1), above > 0.0)
 
 
-def _rise(values: Array, touching: NDArray[np.bool_], axis: int) -> Array:
+def _rise(values: Array, touching: Flags, axis: int) -> Array:
     """Size of the change of a quantity (nx, ny) across a cell along an axis, by neighbours in contact."""
     values = np.moveaxis(values, axis, 0)
     touching = np.moveaxis(touching, axis, 0)
@@ -236,7 +248,7 @@ def _check_law(law: object) -> None:
     require(is_law, "law of wear", type(law).__name__, allowed)
 
 
-def _removal(law: WearLaw, rubs: Rubbing) -> tuple[Array, NDArray[np.intp]]:
+def _removal(law: WearLaw, rubs: Rubbing) -> tuple[Array, Indices]:
     """What a law removes; it may be anyone's."""
     what = f"removal of {type(law).__name__}"
     shape = rubs.work.shape
@@ -314,7 +326,7 @@ class WornSurface:
 
     surface: HeightMap
     depth: Array
-    passes: NDArray[np.int64]
+    passes: Integers
     volume: Array
     work: Array
     counts: Counts

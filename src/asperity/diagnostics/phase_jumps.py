@@ -1,9 +1,8 @@
 """Samples that are left out where no time tells it: the phase of a loud tone jumps there."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-from asperity.arguments import Array, floats
+from asperity.arguments import Array, Complex, Indices, floats
 from asperity.diagnostics.missing_samples import Runs, Samples, joined
 from asperity.spectra import psd
 
@@ -59,7 +58,7 @@ def _dominant(values: Samples, turn: float) -> float:
     return float(density[around] @ frequency[around] / density[around].sum())
 
 
-def _jumps(values: Array, tone: float, window: int) -> NDArray[np.intp]:
+def _jumps(values: Array, tone: float, window: int) -> Indices:
     """Places of a signal (n,) at which the phase of a tone, cycles a sample, jumps, and stays."""
     turned = np.exp(-2j * np.pi * tone * np.arange(values.size))
     total = np.concatenate([[0.0], np.cumsum((values - values.mean()) * turned)])
@@ -76,7 +75,7 @@ def _jumps(values: Array, tone: float, window: int) -> NDArray[np.intp]:
     return np.array(places, dtype=np.intp) + 2 * window
 
 
-def _phases(one: NDArray[np.complex128], other: NDArray[np.complex128]) -> Array:
+def _phases(one: Complex, other: Complex) -> Array:
     """Phases of a tone (n,) after those before, less their mean."""
     between = other * one.conj()
     mean = (between / np.maximum(np.abs(between), 1e-300)).mean()

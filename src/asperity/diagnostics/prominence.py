@@ -4,9 +4,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from asperity.arguments import Array
+from asperity.arguments import Array, Flags, Indices
 from asperity.diagnostics.envelopes import Spectrum, mean_spectrum
 from asperity.diagnostics.lines import AROUND, COUNTED, FEWEST, STANDS_OUT, WITHIN, median
 
@@ -138,7 +137,7 @@ class Prominence:
         there = clear[:, 0] & (clear.sum(axis=1) >= np.clip(held, 1, 3))
         return np.where(there, np.nansum(terms, axis=1) / np.maximum(held, 1), 0.0)
 
-    def lines_of(self, fundamental: float) -> tuple[NDArray[np.intp], Array]:
+    def lines_of(self, fundamental: float) -> tuple[Indices, Array]:
         """Places and amplitudes (h,) of the highest lines within one resolution of the harmonics of a
         comb."""
         last = self.amplitude.size - 1
@@ -177,7 +176,7 @@ class Prominence:
                 return self.true_fundamental(fundamental / share, shaft)
         return fundamental
 
-    def _beside_shaft(self, frequency: Array, fundamental: float, shaft: float) -> NDArray[np.bool_]:
+    def _beside_shaft(self, frequency: Array, fundamental: float, shaft: float) -> Flags:
         """Which frequencies are not resolved from multiples of a shaft's speed, Hz, and side bands of a
         comb."""
         side = np.arange(-BESIDE, BESIDE + 1) * shaft

@@ -8,12 +8,12 @@ from typing import Any, Protocol
 import numpy as np
 from xarray import DataTree
 
-from asperity.arguments import Array, NDArray, as_row, require, shown
+from asperity.arguments import Array, Numbers, as_row, require, shown
 from asperity.case.in_memory import name_of
 from asperity.case.table_headings import Column
 from asperity.case.tables import TableSource, read_table
 
-Values = NDArray[np.inexact]
+Values = Numbers
 Collected = dict[str, Array]
 """What is kept of a run, by name."""
 
