@@ -28,7 +28,7 @@ from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.scanned_positions import table_stride
 from asperity.scenarios.scanned_states import states_around, states_expected
 from asperity.scenarios.scene import PreparedCase
-from asperity.scenarios.textures import textures_under
+from asperity.scenarios.textures import Textures, textures_under
 from asperity.store import Store
 
 
@@ -60,7 +60,7 @@ class ReducedCase(PreparedCase):
     def _of_law(self, spec: LawSpec) -> Materials:
         case = self.case
         contact = self.case.contact
-        shape, textures = self.of_heights if spec.sees_heights else (self.shape, self.textures)
+        shape, textures = self._seen if spec.sees_heights else (self.shape, self.textures)
         made_by: dict[str, Callable[[], Any]] = {
             "line": partial(self._line, spec),
             "areal": self._areal,
@@ -77,6 +77,10 @@ class ReducedCase(PreparedCase):
             contact.hardness, case.numerics.rtol, case.law_parameters(spec.name), made_by,
             shape.cells,
         )  # fmt: skip
+
+    @cached_property
+    def _seen(self) -> tuple[Geometry, Textures]:
+        return self.of_heights
 
     @cached_property
     def _reduced(self) -> reducing.Reduction:
@@ -156,7 +160,7 @@ class ReducedCase(PreparedCase):
             self.progress(which * positions + done, count * positions, message)
 
     def _scan_of(self, state: int, progress: Progress) -> ScannedForces:
-        shape, textures = self.of_heights
+        shape, textures = self._seen
         job = ScanJob(
             shape.half_space(self.case.contact.hardness), textures.surface, shape.body,
             self._reduced.approaches[state], table_stride(self),
@@ -185,7 +189,7 @@ class ReducedCase(PreparedCase):
         """The scan of the path, to look forces up in."""
         rows = self._scanned_rows
         dx = self.shape.spacing[0]
-        shape, textures = self.of_heights
+        shape, textures = self._seen
         body = shape.body
         if textures.defects is not None or shape is not self.shape:
             touches = first_touch(textures.surface, body, rows.step, rows.start) + self._scanned_planes

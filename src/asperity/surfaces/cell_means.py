@@ -3,7 +3,7 @@
 import numpy as np
 
 from asperity.arguments import Array
-from asperity.surfaces.strip import Strip
+from asperity.surfaces.strip import PIECE, Fields, Strip, joined_pieces
 
 SHORTEST = 8.0
 """Second differences of the shortest wave that a grid holds, over its heights: the fields of a chessboard."""
@@ -48,15 +48,26 @@ def _bend(heights: Array) -> Array:
 
 
 class PressedStrip:
-    """A strip of texture as covered cells press it."""
+    """A strip of texture as covered cells press it, in pieces that are kept: states are scanned in turn."""
 
     def __init__(self, strip: Strip) -> None:
         self.strip = strip
         self.shape = strip.shape
         self.spacing = strip.spacing
+        self._kept = Fields()
 
     def rows(self, first: int, stop: int) -> Array:
         """Heights of the cells of the rows first … stop − 1, m."""
-        begin = max(first - 2, 0)
-        known = pressed_heights(self.strip.rows(begin, min(stop + 2, self.shape[0])))
-        return known[first - begin : stop - begin]
+        return joined_pieces((first, stop), self.shape[1], self._piece, self._pressed)
+
+    def _piece(self, row: int) -> tuple[int, int]:
+        begin = row // PIECE * PIECE
+        return begin, min(begin + PIECE, self.shape[0])
+
+    def _pressed(self, first: int, stop: int) -> Array:
+        def make() -> Array:
+            begin = max(first - 2, 0)
+            known = pressed_heights(self.strip.rows(begin, min(stop + 2, self.shape[0])))
+            return known[first - begin : stop - begin]
+
+        return self._kept.rows(first, make)

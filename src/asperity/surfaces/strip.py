@@ -140,6 +140,23 @@ def turning(strip: Strip, turn: Array, start: int) -> Raised:
     return Raised(strip, lambda first, stop: turn[(np.arange(first, stop) + start) % len(turn)])
 
 
+Range = tuple[int, int]
+
+
+def joined_pieces(
+    rows: Range, lines: int, piece: Callable[[int], Range], made: Callable[[int, int], Array]
+) -> Array:
+    """Heights (rows, lines), m, of rows from one to before another, of the pieces that hold them."""
+    start, stop = rows
+    heights = np.empty((max(stop - start, 0), lines))
+    while start < stop:
+        begin, end = piece(start)
+        upto = min(stop, end)
+        heights[start - rows[0] : upto - rows[0]] = made(begin, end)[start - begin : upto - begin]
+        start = upto
+    return heights
+
+
 @dataclass(frozen=True, eq=False)
 class LongStrip:
     """Gaussian strip of any length, drawn where it is read.
@@ -166,13 +183,7 @@ class LongStrip:
 
     def rows(self, first: int, stop: int) -> Array:
         """Heights of the rows first … stop − 1, m, shape (stop − first, ny)."""
-        heights = np.empty((max(stop - first, 0), self.shape[1]))
-        start = first
-        while start < stop:
-            begin, end = self._piece(start)
-            upto = min(stop, end)
-            heights[start - first : upto - first] = self._made(begin, end)[start - begin : upto - begin]
-            start = upto
+        heights = joined_pieces((first, stop), self.shape[1], self._piece, self._made)
         return heights if self.transform is None else self.transform(heights)
 
     def _piece(self, row: int) -> tuple[int, int]:
