@@ -16,6 +16,11 @@ PLANE = {name: each for name, each in small_cases.BALL.items() if name != "ball"
 PLANE |= {"kind": "bodies", "over": "plane", "body": {"load": "30 N"}}
 PERFECT = {name: each for name, each in small_cases.BEARING.items() if name != "fault"}
 PERFECT |= {"radial": "0 N", "axial": "100 N", "settling": "0 s", "sampling_rate": "16 kHz"}
+FEW = {
+    "bearing": {
+        "balls": 3, "ball_diameter": "7.94 mm", "pitch_diameter": "39.04 mm", "contact_angle": "20 deg"
+    }
+}  # fmt: skip
 NOISE = re.compile(r"10⁻[⁹¹][⁰¹²³⁴⁵⁶⁷⁸⁹]*|[−-][23]\d\d(?:\.\d+)? dB|0\.0{6,}\d|\d pN|\d [pf]m/s")
 
 
@@ -88,16 +93,16 @@ def test_a_law_that_is_looked_up_is_tried_for_a_tenth_of_run_in_and_record(monke
         ({}, True, True),
         ({"radial": "1 N"}, False, False),  # balls are not carried alike
         ({"rotating": "1 N"}, True, False),  # they are at rest alone
-        ({"speed": "1400..1800 1/min in 0.1 s", "duration": "0.15 s"}, False, False),
-        ({"duration": "80 ms"}, False, True),
+        ({"speed": "5600..7200 1/min in 25 ms", "duration": "38 ms"}, False, False),
+        ({"duration": "20 ms", "bearing": {"name": "6205"}}, False, True),
     ],
 )
 def test_perfect_surfaces_are_rolled_for_a_turn_of_the_cage_where_nothing_vibrates(
     monkeypatch, keys, asked, still
 ):
-    """All of the record elsewhere."""
-    keys = {"duration": "0.12 s", "laws": ["hertz"], "inner_raceway": {"waviness": "0.2 um"}} | keys
-    case = as_case(PERFECT | keys)
+    """All of the record elsewhere, as of one that is shorter than a turn; three balls are few contacts."""
+    waves = {"laws": ["hertz"], "inner_raceway": {"waviness": "0.2 um"}}
+    case = as_case(PERFECT | FEW | waves | {"speed": "7200 1/min", "duration": "36 ms"} | keys)
     rolled = recorded_durations(monkeypatch)
     found = run(case)["bearing"]["alone_velocity"].values[0, :2]
     assert (found == 0.0).all() == still
