@@ -134,7 +134,7 @@ def test_the_chance_of_the_record_that_is_run_is_in_the_intervals(track, monkeyp
         0.0,
         0.1,
         lambda _: "",
-        lambda trial, measured: trial.whole.surface.level + 0.0 * measured.at,
+        lambda trial, measured: trial.case.surface.level + 0.0 * measured.at,
         lambda _: ("surface.level",),
         "loudness",
         collect=lambda _: {},

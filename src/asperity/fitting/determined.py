@@ -4,6 +4,7 @@ from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.special import chdtrc, ndtri, stdtrit
 
 from asperity.arguments import Array
 
@@ -65,13 +66,11 @@ def spread_of(square: float, freedom: int, *, believed: bool, read: bool = False
     those of Student. Read from a few repeats they are uncertain themselves, and what is left makes them
     larger, not smaller.
     """
-    from scipy.stats import norm, t
-
     tail = 0.5 * (1.0 + CONFIDENCE)
     if believed:
-        return Spread(1.0, float(norm.ppf(tail)))
+        return Spread(1.0, float(ndtri(tail)))
     least = 1.0 if read else LEAST_SCALE
-    return Spread(max(float(np.sqrt(square / freedom)), least), float(t.ppf(tail, freedom)))
+    return Spread(max(float(np.sqrt(square / freedom)), least), float(stdtrit(freedom, tail)))
 
 
 def left_out(left: Array, uncertainty: Array, freedom: int) -> float:
@@ -82,12 +81,11 @@ def left_out(left: Array, uncertainty: Array, freedom: int) -> float:
     at least as well as in one case of a hundred.
     """
     from scipy.optimize import brentq
-    from scipy.stats import chi2
 
     def surplus(beyond: float) -> float:
         return float(np.sum(left**2 / (uncertainty**2 + beyond**2))) - freedom
 
-    if chi2.sf(surplus(0.0) + freedom, freedom) > IMPLAUSIBLE:
+    if chdtrc(freedom, surplus(0.0) + freedom) > IMPLAUSIBLE:
         return 0.0
     return float(brentq(surplus, 0.0, float(np.sqrt(np.sum(left**2) / freedom)) + 1e-9))
 

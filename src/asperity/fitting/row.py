@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.polynomial.polynomial import polyvander
 
 from asperity.arguments import Array
 from asperity.fitting.determined import Spread, left_out, spread_of
@@ -122,11 +123,12 @@ def weights(places: Array, at: Array) -> Array:
     away = places - at[:, None]
     near = np.argsort(np.abs(away), axis=1, kind="stable")[:, :NEIGHBOURS]
     away = np.take_along_axis(away, near, axis=1)
-    reach = np.abs(away).max(axis=1, keepdims=True) * (1.0 + 1.0 / NEIGHBOURS)
-    root = np.sqrt(_nearness(away, reach))
-    powers = (away / reach)[..., None] ** np.arange(ORDER + 1)
+    away /= np.abs(away).max(axis=1, keepdims=True) * (1.0 + 1.0 / NEIGHBOURS)
+    powers = polyvander(away, ORDER)
+    weighted = powers * _nearness(away, 1.0)[..., None]
+    of_value = np.linalg.solve(weighted.swapaxes(1, 2) @ powers, np.eye(ORDER + 1)[:, :1])
     found = np.zeros((len(at), len(places)))
-    np.put_along_axis(found, near, np.linalg.pinv(powers * root[..., None])[:, 0] * root, axis=1)
+    np.put_along_axis(found, near, (weighted @ of_value)[..., 0], axis=1)
     return found
 
 

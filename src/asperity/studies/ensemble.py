@@ -4,7 +4,7 @@ from typing import TypeVar
 
 import numpy as np
 import xarray
-from scipy import stats
+from scipy.special import stdtrit
 
 from asperity.arguments import real, require
 from asperity.errors import InputError
@@ -103,7 +103,7 @@ def student(values: xarray.DataArray, share: float) -> tuple[xarray.DataArray, x
     """Half of the confidence interval of a mean over the seeds, t s/√n, NaN of fewer than two; and n."""
     count = values.notnull().sum(SEED)
     n = count.where(count >= 2)
-    reach = stats.t.ppf(0.5 * (1.0 + share), n - 1)
+    reach = stdtrit(n - 1, 0.5 * (1.0 + share))
     return _deviation(values, n) * reach / np.sqrt(n), count
 
 
