@@ -26,6 +26,17 @@ def test_a_parabola_is_its_own_curve_without_chance():
     assert weights(PLACES, row.fine).sum(axis=1) == pytest.approx(1.0, abs=1e-12)
 
 
+@pytest.mark.parametrize("at", [-2.0, 0.03, 1.1])
+def test_a_curve_nearby_is_clevelands(at):
+    """A parabola by least squares, of eleven neighbours weighted by (1 − |d/h|³)³, h 12/11 of the last."""
+    values = np.random.default_rng(2).standard_normal(len(PLACES))
+    near = np.argsort(np.abs(PLACES - at), kind="stable")[:11]
+    away = PLACES[near] - at
+    tricube = (1.0 - np.abs(away / (12.0 / 11.0 * np.abs(away).max())) ** 3) ** 3
+    expected = np.polyfit(away, values[near], 2, w=np.sqrt(tricube))[-1]
+    assert weights(PLACES, np.array([at])) @ values == pytest.approx(expected, rel=1e-9)
+
+
 def test_a_row_has_enough_places_however_near_its_ends_are():
     assert np.diff(places_of(0.0, 4.0)) == pytest.approx(STEP)
     assert len(places_of(0.0, 0.1)) == 2 * NEIGHBOURS + 1
