@@ -4,6 +4,7 @@ import ast
 import re
 import subprocess
 import sys
+from functools import cache
 from importlib.util import resolve_name
 from pathlib import Path
 
@@ -30,6 +31,7 @@ TAKEN = re.compile(r"""\b(?:from|import)\s*\(?\s*["'](\.{1,2}/[^"']+)["']""")
 """What a script takes from another file, at its top or when it is needed."""
 
 
+@cache
 def file_of(name, root):
     """The file of a module by its name with dots, the first of which is that of the root; else None."""
     path = root.parent.joinpath(*name.split("."))
