@@ -314,14 +314,14 @@ class Meeting:
         """
         if not self.inside > 0.0:
             return None
-        half = min(hertz.semi_axes(hertz.approach(load))[1], self.inside)
+        half = min(hertz.semi_axes_under(load)[1], self.inside)
         for _ in range(SETTLED):
             y = half * np.linspace(-1.0, 1.0, 201)
             curvature = float(np.polynomial.polynomial.polyfit(y, self.gap(y), 2)[2])
             if not curvature > 0.0:
                 return None
             hertz = replace(hertz, radius_y=0.5 / curvature)
-            half = min(hertz.semi_axes(hertz.approach(load))[1], self.inside)
+            half = min(hertz.semi_axes_under(load)[1], self.inside)
         return hertz
 
     @classmethod

@@ -329,7 +329,7 @@ class BearingUnderLoad(AnyCase):
     @cached_property
     def ball_resonance(self) -> float:
         """Natural frequency, Hz, of the most loaded ball between both rings at rest."""
-        stiffness = sum(each.tangent_stiffness(each.approach(load)) for each, load in self.contacts)
+        stiffness = sum(each.stiffness_under(load) for each, load in self.contacts)
         return math.sqrt(stiffness / self.bearing.bearing.ball_mass) / (2.0 * math.pi)
 
     def bending_rings(self) -> tuple[Around | None, Ring | Around | None]:
@@ -367,7 +367,7 @@ class BearingUnderLoad(AnyCase):
                 modes = bending.natural_frequencies
                 found = max(found, PER_MODE * float(modes[modes <= HIGHEST].max(initial=0.0)))
             moved = 1.0 / of.ball_mass + np.linalg.norm(shapes, 2) ** 2
-            resonance = math.sqrt(contact.tangent_stiffness(contact.approach(load)) * moved) / (2.0 * math.pi)
+            resonance = math.sqrt(contact.stiffness_under(load) * moved) / (2.0 * math.pi)
             found = max(found, self.resolving(resonance))
         return found
 

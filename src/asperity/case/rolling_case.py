@@ -142,8 +142,7 @@ class RollingCase(AnyCase):
     @cached_property
     def resting_stiffness(self) -> float:
         """Stiffness, N/m, of each contact between smooth bodies at rest."""
-        hertz = self.smooth_contact
-        return hertz.tangent_stiffness(hertz.approach(self.rolling.contact_load))
+        return self.smooth_contact.stiffness_under(self.rolling.contact_load)
 
     @cached_property
     def upper_stiffness(self) -> float:
@@ -153,8 +152,7 @@ class RollingCase(AnyCase):
             return 0.0
         if rolling.springs:
             return rolling.springs[0]
-        hertz = self.smooth_contact
-        return hertz.tangent_stiffness(hertz.approach(rolling.upper_load))
+        return self.smooth_contact.stiffness_under(rolling.upper_load)
 
     @cached_property
     def contact_resonance(self) -> float:

@@ -320,7 +320,7 @@ class Case(RollingCase):
     def _problem_of_spin(self) -> Iterator[InputError]:
         """A spin that moves the rim of the smooth contact no faster than other creepages may."""
         load = self.rolling.contact_load
-        semi_axes = self.smooth_contact.semi_axes(self.smooth_contact.approach(load))
+        semi_axes = self.smooth_contact.semi_axes_under(load)
         spin = self.creep.spin or 0.0
         most = MOST_CREEPAGE / max(semi_axes)
         if abs(spin) > most:

@@ -189,7 +189,7 @@ class Film:
 
     def stiffness(self, force: float) -> float:
         """dF/dδ, N/m, of bodies and film in series under a force, N: 1/k = 1/k_H − dh/dF."""
-        bodies = self.contact.tangent_stiffness(self.contact.approach(force))
+        bodies = self.contact.stiffness_under(force)
         return 1.0 / (1.0 / bodies - self.formula.central.load * self.central(force) / force)
 
     def damping(self, force: float) -> float:
@@ -205,7 +205,7 @@ class Film:
 
     def mean_pressure(self, force: float) -> float:
         """Mean pressure of the contact under a force, N; Pa."""
-        along, across = self.contact.semi_axes(self.contact.approach(force))
+        along, across = self.contact.semi_axes_under(force)
         return force / (math.pi * along * across)
 
     def of_bodies(self, approach: ArrayLike) -> Array:
@@ -287,11 +287,11 @@ class LineFilm(Film):
         """How fast the half width grows with the approach under a force, N: db/dδ."""
         per_length = force / (math.pi * self.contact.modulus * self.contact.length)
         half_width = 2.0 * math.sqrt(per_length * self.radius)
-        return 0.5 * half_width * self.contact.tangent_stiffness(self.contact.approach(force)) / force
+        return 0.5 * half_width * self.contact.stiffness_under(force) / force
 
     def mean_pressure(self, force: float) -> float:
         """Mean pressure of the contact under a force, N; Pa."""
-        along, across = self.contact.semi_axes(self.contact.approach(force))
+        along, across = self.contact.semi_axes_under(force)
         return force / (4.0 * along * across)
 
     def of_bodies(self, approach: ArrayLike) -> Array:

@@ -225,5 +225,5 @@ class FourPointBall:
     @property
     def largest_force(self) -> float:
         """Force of a contact at which its ellipse reaches the bottom of the arch, N."""
-        axis = max(each.semi_axes(each.approach(1.0))[1] for each in (self.lower, self.upper))
+        axis = max(each.semi_axes_under(1.0)[1] for each in (self.lower, self.upper))
         return (self.arch.flank / axis) ** 3  # it grows with the third root of the force

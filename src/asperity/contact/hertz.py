@@ -1,6 +1,7 @@
 """Smooth bodies in contact: Hertz in closed form, and bodies that conform, as a ball in its groove."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
@@ -15,8 +16,29 @@ HALVINGS = 56
 """Of the interval that holds the logarithm of the axis ratio, until its ends are neighbours."""
 
 
+class SmoothContact:
+    """Contact of smooth bodies, whose approach under a force is known: what it has under a force."""
+
+    approach: Callable[[float], float]
+    tangent_stiffness: Callable[[float], float]
+    semi_axes: Callable[[float], tuple[float, float]]
+    peak_pressure: Callable[[float], float]
+
+    def stiffness_under(self, force: float) -> float:
+        """Tangent stiffness dF/dδ under a force, N; N/m."""
+        return self.tangent_stiffness(self.approach(force))
+
+    def semi_axes_under(self, force: float) -> tuple[float, float]:
+        """Semi-axes in the rolling direction and across it under a force, N; m."""
+        return self.semi_axes(self.approach(force))
+
+    def pressure_under(self, force: float) -> float:
+        """Largest pressure under a force, N; Pa."""
+        return self.peak_pressure(self.approach(force))
+
+
 @dataclass(frozen=True)
-class Hertz:
+class Hertz(SmoothContact):
     """Smooth contact with the gap x²/(2 Rx) + y²/(2 Ry).
 
     Parameters

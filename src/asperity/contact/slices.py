@@ -8,6 +8,7 @@ import numpy as np
 
 from asperity.arguments import Array, ArrayLike, not_negative, positive, whole
 from asperity.contact.crowning import Crowning
+from asperity.contact.hertz import SmoothContact
 
 ISO_STIFFNESS = 35948e6
 """Load of a steel roller between two raceways over L^(8/9) δ^(10/9), N/m²; printed as 35948, of N and mm."""
@@ -48,7 +49,7 @@ class PressedSlices:
 
 
 @dataclass(frozen=True)
-class SlicedContact:
+class SlicedContact(SmoothContact):
     """Contact of a roller and its raceway by slices that do not know of each other.
 
     Parameters

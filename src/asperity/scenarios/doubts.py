@@ -107,7 +107,7 @@ def doubt_sizes(case: Case, over: object) -> None:
     if load < LIFTED * GRAVITY * carried:
         told = f"what rests on a contact weighs {in_newtons(GRAVITY * carried)}, so that something lifts it"
         _warn(f"{name}.load", load, "N", told)
-    pressure = case.smooth_contact.peak_pressure(case.smooth_contact.approach(load))
+    pressure = case.smooth_contact.pressure_under(load)
     if case.contact.hardness is None and pressure > STATIC_PRESSURE:
         told = f"smooth bodies press with {rounded(pressure / 1e9)} GPa, and dents begin in bearing steel at "
         _warn(f"{name}.load", load, "N", f"{told}{STATIC_PRESSURE / 1e9:g} GPa (ISO 76)", "kN")
@@ -354,7 +354,7 @@ def doubt_bearing(case: BearingUnderLoad) -> None:
     contact, heaviest = case.contacts[1]
     _doubt_usual(case, OF_ANYTHING | OF_BEARINGS)
     _doubt_run_in(case.settling, case.duration)
-    _doubt_springs(case, contact.tangent_stiffness(contact.approach(heaviest)))
+    _doubt_springs(case, contact.stiffness_under(heaviest))
     _doubt_taper(of)
     if case.rotating > TURNING_LOAD * load:
         _warn("rotating", case.rotating, "N", f"all that stands still is {in_newtons(load)}")
@@ -411,7 +411,7 @@ def _doubt_taper(of: AnyBearing) -> None:
 
 def _doubt_damping(key: str, damping: float, contact: Hertz, load: float, mass: float) -> None:
     """Warn of a damper beside a contact under a load, N, of a mass, kg, that leaves nothing to its spring."""
-    critical = 2.0 * math.sqrt(contact.tangent_stiffness(contact.approach(load)) * mass)
+    critical = 2.0 * math.sqrt(contact.stiffness_under(load) * mass)
     if damping and not UNDAMPED * critical <= damping <= OVERDAMPED * critical:
         _warn(key, damping, "N s/m", f"critical damping of this contact is {rounded(critical)} N s/m")
 

@@ -71,7 +71,7 @@ class Geometry:
 
     def axes(self, force: float) -> tuple[float, float]:
         """Semi-axes (a_x, a_y) of the nominal patch under a force, N; m."""
-        return self.hertz.semi_axes(self.hertz.approach(force))
+        return self.hertz.semi_axes_under(force)
 
     def half_space(self, hardness: float | None) -> HalfSpace:
         """Make the half-space of the window, whose asperities flow at a pressure, Pa, or not at all."""
@@ -245,7 +245,7 @@ def _measured_gap(case: scene.Case, met: across.Meeting, hertz: Hertz, load: flo
         allowed = "a gap that opens on both sides"
         require(curvature > 0.0, both, received, allowed)
         hertz = replace(hertz, radius_y=float(0.5 / curvature))
-        half = hertz.semi_axes(hertz.approach(load))[1]
+        half = hertz.semi_axes_under(load)[1]
     if doubt := met.doubt_of_printed(hertz.radius_y, half, both):
         OutOfRangeWarning.warn(doubt)
     return gap, hertz

@@ -244,7 +244,7 @@ def doubt_time_step(prepared: PreparedCase) -> None:
     own = np.concatenate([body.natural_frequencies for body in prepared.scene.rolling])
     limits = [("the highest mode of a body", float(own[own <= highest].max(initial=0.0)), PER_MODE)]
     if isinstance(over, Track):
-        stiffness = shape.hertz.tangent_stiffness(shape.hertz.approach(shape.load))
+        stiffness = shape.hertz.stiffness_under(shape.load)
         on_bay = math.sqrt(stiffness / (over.mass_per_length * over.sleeper_spacing)) / (2.0 * math.pi)
         limits += [
             ("the contact resonance on a bay of rail", on_bay, PER_RESONANCE_ON_RAIL),

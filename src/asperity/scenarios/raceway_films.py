@@ -43,7 +43,7 @@ class RacewayFilm:
     @cached_property
     def axes(self) -> tuple[float, float]:
         """Half axes of the contact, m."""
-        return self.film.contact.semi_axes(self.film.contact.approach(self.load))
+        return self.film.contact.semi_axes_under(self.load)
 
     @property
     def longest(self) -> float:

@@ -64,7 +64,7 @@ def raceway_on(
     """
     texture = texture or AroundTexture()
     around = 2.0 * math.pi * positive("radius of the raceway (m)", radius)
-    axes = contact.semi_axes(contact.approach(positive("load of a ball or roller (N)", load)))
+    axes = contact.semi_axes_under(positive("load of a ball or roller (N)", load))
     slice_length = None if isinstance(contact, Hertz) else contact.length / contact.slices
     cells = axes[0] / CELLS[0], slice_length or axes[1] / CELLS[1]
     wave = [texture.shortest / CELLS_OF_WAVE] if texture.is_rough else []

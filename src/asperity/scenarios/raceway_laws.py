@@ -111,7 +111,7 @@ class OnRaceway:
     @cached_property
     def axes(self) -> tuple[float, float]:
         """Half axes of the smooth contact under the load, m, those of a roller half its width and length."""
-        return self.contact.semi_axes(self.contact.approach(self.load))
+        return self.contact.semi_axes_under(self.load)
 
     @cached_property
     def stride(self) -> int:
@@ -510,7 +510,7 @@ class OnRaceway:
 
     def _areal(self) -> StateTexture:
         """Heights averaged under the patch of each state that carries load."""
-        axes = [self.contact.semi_axes(self.contact.approach(each)) for each in self.loaded.forces]
+        axes = [self.contact.semi_axes_under(each) for each in self.loaded.forces]
         texture = self._texture(self.averaged(self.wavy, np.array(axes)), self.loaded.approaches)
         return texture.with_fewer_states(0.0)  # one where it is alike in all of them, as of a smooth raceway
 

@@ -25,7 +25,7 @@ def bearing_findings(case: BearingUnderLoad, runs: dict[str, RolledBearing]) -> 
             "Take a smaller time_step.", warned=True
         )  # fmt: skip
         yield energy_left(name, left, "time_step")
-        stiffness = [each.tangent_stiffness(each.approach(load)) for each, load in case.contacts]
+        stiffness = [each.stiffness_under(load) for each, load in case.contacts]
         yield from contacts_softened(name, float((run.softening.T * stiffness).max()), "time_step")
         yield from out_of_place(case, name, run)
     yield from _missed(runs)

@@ -124,7 +124,7 @@ class BallsInGrooves(RollingBearing):
         if clearance < 0.0:
             load = self.series_stiffness * (-0.5 * clearance) ** 1.5
             contacts = self.inner_contact, self.outer_contact
-            peak = max(each.peak_pressure(each.approach(load)) for each in contacts)
+            peak = max(each.pressure_under(load) for each in contacts)
             # it grows with the root of the overlap
             elastic = -1e6 * clearance * (STATIC_PRESSURE / peak) ** 2
             received = (

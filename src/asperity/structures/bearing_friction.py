@@ -81,7 +81,7 @@ class BallOnRaceway(SteadyRolling):
 
         Its creepage is that in the middle: √(ξ/χ) across are the lines of pure rolling.
         """
-        along, across = self.contact.semi_axes(self.contact.approach(load))
+        along, across = self.contact.semi_axes_under(load)
         spacing = 2.0 * ROOM * along / CELLS[0], 2.0 * ROOM * across / CELLS[1]
         space = HalfSpace(CELLS, spacing, self.contact.modulus)
         x, y = cell_places(space)

@@ -130,7 +130,7 @@ class LoadedBearing(LoadedRow):
     def semi_axes(self, ring: str) -> tuple[Array, Array]:
         """Semi-axes of the contacts with the ``"inner"`` or ``"outer"`` ring, along and across (m, Z), m."""
         contact, load = self._contacts[ring]
-        along, across = contact.semi_axes(contact.approach(1.0))
+        along, across = contact.semi_axes_under(1.0)
         return along * np.cbrt(load), across * np.cbrt(load)
 
     @property
@@ -145,7 +145,7 @@ class LoadedBearing(LoadedRow):
 
     def _pressure(self, ring: str) -> Array:
         contact, load = self._contacts[ring]
-        return contact.peak_pressure(contact.approach(1.0)) * np.cbrt(load)
+        return contact.pressure_under(1.0) * np.cbrt(load)
 
     @property
     def _contacts(self) -> dict[str, tuple[Hertz, Array]]:
@@ -445,7 +445,7 @@ def _doubt(found: LoadedBearing) -> None:
         force, lighter = max(alone[ring], default=(0.0, ""))
         lighter = lighter if force > 0.5 * heaviest else "Lower the load"
         check_half_space(
-            contact.semi_axes(contact.approach(heaviest)),
+            contact.semi_axes_under(heaviest),
             0.5 * D,
             groove_radius=conformity * D,
             raceway_radius=raceway if ring == "inner" else -raceway,
@@ -491,7 +491,7 @@ def _doubt_flanks(found: LoadedBearing, ring: str) -> None:
 def doubt_fit(of: BallsInGrooves | RollersOnRaceways) -> None:
     """Warn of a clearance below zero that presses what rolls beyond what steel lasts under, unloaded."""
     squeezed = of.interference_force(overlap_of(of))
-    peak = max(each.peak_pressure(each.approach(squeezed)) for each in (of.inner_contact, of.outer_contact))
+    peak = max(each.pressure_under(squeezed) for each in (of.inner_contact, of.outer_contact))
     if peak > FATIGUE_PRESSURE:
         OutOfRangeWarning.warn(
             f"clearance = {rounded(of.radial_clearance * 1e6, 4)} µm presses every {of.ELEMENT} with "
