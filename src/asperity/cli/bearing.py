@@ -6,8 +6,6 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from asperity.case.loaded_bearing import LoadKeys, bearing_of_run, read_bearing
 from asperity.cli.bearing_films import say_films
 from asperity.cli.bearing_table import write_table
@@ -190,8 +188,9 @@ def _carried(keys: LoadKeys, picture: Path | None) -> dict[str, Any]:
     of = found.bearing
     say(f"{' to '.join(ends)} of {of.balls} {of.ELEMENT}s touch the inner ring while the cage turns.")
     if isinstance(found, LoadedRollers):
-        heaviest = np.unravel_index(int(found.inner_load.argmax()), found.inner_load.shape)
-        carrying = f"{rounded(1e3 * found.carrying_length[heaviest])} of {rounded(1e3 * of.roller_length)} mm"
+        carrying = (
+            f"{rounded(1e3 * found.carrying_length[found.heaviest])} of {rounded(1e3 * of.roller_length)} mm"
+        )
         say(f"Of the roller that carries most {carrying} touch the inner ring; {_tilted(found)}.")
         _say_rubbing(keys, found)
     elif isinstance(found, LoadedBearing) and of.arches:
@@ -240,10 +239,12 @@ def _say_rubbing(keys: LoadKeys, found: LoadedRollers) -> None:
 
 def _say_flanks(found: LoadedBearing, turning: Kinematics) -> None:
     """Say what both flanks of each ring carry of the ball that carries most, and how balls spin on them."""
-    heaviest = np.unravel_index(int(found.inner_load.argmax()), found.inner_load.shape)
     loads = [
         f"{rounded(float(max(each)), 4)} and {rounded(float(min(each)), 4)} N on the {ring} ring"
-        for ring, each in (("inner", found.inner_loads[heaviest]), ("outer", found.outer_loads[heaviest]))
+        for ring, each in (
+            ("inner", found.inner_loads[found.heaviest]),
+            ("outer", found.outer_loads[found.heaviest]),
+        )
     ]
     say(f"Flanks of the ball that carries most: {', '.join(loads)}; contacts of the others are in --json.")
     spins = " and ".join(f"{rounded(1e-3 * each, 3)}" for each in flank_spin(found.bearing))

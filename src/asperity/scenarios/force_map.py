@@ -13,10 +13,10 @@ from asperity.arguments import Array, ArrayLike, FilePath, as_row, finite_array,
 from asperity.case.any_case import AnyCase, function_named
 from asperity.case.cases import as_case
 from asperity.errors import InputError
-from asperity.files import write_bytes
 from asperity.laws import Law
 from asperity.laws.layout import force
 from asperity.results import save, variable
+from asperity.text_files import write_csv
 from asperity.written_numbers import count_of
 
 if TYPE_CHECKING:
@@ -127,8 +127,7 @@ def write_force_map(found: DataArray, path: FilePath) -> Path:
         matrix = np.block(
             [[np.zeros((1, 1)), found["position"].values], [found["approach"].values[:, None], found.values]]
         )
-        lines = [HEADING, *(",".join(map(repr, row)) for row in matrix.tolist())]
-        return write_bytes(path, ("\n".join(lines) + "\n").encode())
+        return write_csv(path, [HEADING], matrix.tolist())
     if path.suffix.lower() != ".nc":
         raise InputError("file of a map", f"'{path.name}'", f"a name that ends in {' or '.join(ENDINGS)}")
     from xarray import DataTree

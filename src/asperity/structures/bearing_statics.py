@@ -45,6 +45,12 @@ class LoadedRow:
         """How many balls or rollers touch the inner ring, at each angle of the cage (m,)."""
         return np.asarray(np.count_nonzero(self.inner_load, axis=1), dtype=float)
 
+    @property
+    def heaviest(self) -> tuple[int, int]:
+        """Angle of the cage and ball or roller, by number, at which one carries most."""
+        cage, element = np.unravel_index(int(self.inner_load.argmax()), self.inner_load.shape)
+        return int(cage), int(element)
+
     @cached_property
     def leaving_speed(self) -> float | None:
         """Turns per second from which on some leave the inner ring, all of which are pressed at rest.

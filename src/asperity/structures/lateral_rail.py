@@ -119,8 +119,7 @@ def lateral_waves(free: FreeWaves, support: Complex, spacing: float) -> LateralW
     c, z = np.linalg.eig(matrix)
     c = c.T
     z = np.moveaxis(z, 0, -1)  # (j, f), (i, j, f)
-    root = np.sqrt(c - 1.0) * np.sqrt(c + 1.0)
-    multipliers = 1.0 / np.where(np.real(root * np.conj(c)) < 0.0, c - root, c + root)
+    multipliers = periodic_rail.multipliers_of(c)
     square = np.sum(z**2 * (sine / amplitude)[:, None], axis=0)
     coefficients = -2.0 / ((multipliers - 1.0 / multipliers) * square)
     return LateralWaves(multipliers, coefficients, free.wavenumbers, shapes[:, :, None] * z, spacing)

@@ -1,10 +1,11 @@
 """The exact receptance of a rail on periodic supports."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from asperity.arguments import Array, Complex
+from asperity.arguments import Array, Complex, NDArray
 from asperity.errors import InputError
 from asperity.structures.support import Losses
 
@@ -222,13 +223,17 @@ def periodic_waves(
     sign = np.where(np.real(root * np.conj(total)) < 0.0, -1.0, 1.0)
     larger = 0.5 * (total + sign * root)
     c = np.stack([larger, product / larger])
-    root = np.sqrt(c - 1.0) * np.sqrt(c + 1.0)
-    sign = np.where(np.real(root * np.conj(c)) < 0.0, -1.0, 1.0)
-    multipliers = 1.0 / (c + sign * root)
+    multipliers = multipliers_of(c)
     slope = u_1 * (c - c_2) + u_2 * (c - c_1)  # (C_1 - c)(C_2 - c) / K on the roots
     coefficients = -2.0 / (slope * (c - c[::-1]) * (multipliers - 1.0 / multipliers))
     weights = 1j * amplitudes[:, None] * (cosine[::-1, None] - c)
     return PeriodicWaves(multipliers, coefficients, wavenumbers, weights, spacing)
+
+
+def multipliers_of(c: NDArray[Any]) -> Complex:
+    """Multipliers λ from bay to bay of waves that grow no more, by c = (λ + 1/λ)/2."""
+    root = np.sqrt(c - 1.0) * np.sqrt(c + 1.0)
+    return 1.0 / np.where(np.real(root * np.conj(c)) < 0.0, c - root, c + root)
 
 
 def decaying(square: Complex) -> Complex:
@@ -259,9 +264,7 @@ def static_receptance(stiffness: float, shear: float, support: float, spacing: f
     cubic = 0.25 * bending * spacing**3
     linear = 0.5 * shear * spacing - bending * spacing**3 / 12.0
     y = np.roots(np.array([1.0, support * linear, support * cubic], dtype=complex))
-    c = 1.0 - y
-    root = np.sqrt(c - 1.0) * np.sqrt(c + 1.0)
-    multipliers = 1.0 / np.where(np.abs(c + root) > 1.0, c + root, c - root)
+    multipliers = multipliers_of(1.0 - y)
 
     def shape(multiplier: Complex) -> Complex:
         ramp = (spacing - x) + multiplier * x

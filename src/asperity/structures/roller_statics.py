@@ -478,8 +478,7 @@ def _doubt(found: LoadedRollers) -> None:
 
 def _doubt_crowning(found: LoadedRollers) -> None:
     of = found.bearing
-    heaviest = np.unravel_index(int(found.inner_load.argmax()), found.inner_load.shape)
-    slices = found.inner_slices[heaviest]
+    slices = found.inner_slices[found.heaviest]
     share = np.count_nonzero(slices) / of.slices
     if 0.0 < share < LEAST_LENGTH:
         contact = of.inner_contact
