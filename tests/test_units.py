@@ -177,3 +177,9 @@ def test_of_the_table_of_units_those_are_read_that_are_asked_for():
         function.cache_clear()
     assert scale_of("kN s/mm").value == 1e6
     assert unit_table._defined.cache_info().currsize == 3
+
+
+def test_words_behind_a_unit_raise_it_where_it_stands():
+    assert scale_of("m per second squared") == scale_of("m/s^2")
+    assert scale_of("N per meter cubed") == scale_of("N/m^3")
+    assert scale_of("kg meter squared") == scale_of("kg m^2")
