@@ -58,7 +58,8 @@ def program(*words, code=0, script=PROGRAM, **environment):
 
 def made_again(page, folder, *words):
     """Save the files that a page shows under Make it again, and call its command, with further words."""
-    told = page.read_text("utf-8").partition('<h2 id="remake">')[2]
+    before, _, told = page.read_text("utf-8").partition('<h2 id="remake">')
+    assert '<a href="#remake">Make it again</a>' in before  # among the contents
     command, *texts = map(html.unescape, re.findall(r"<pre[^>]*>(.*?)</pre>", told, re.DOTALL))
     folder.mkdir()
     for name, text in zip(re.findall(r"<code>(.*?)</code>", told), texts, strict=True):
