@@ -287,8 +287,9 @@ class ScanJob:
             edges = None if edges is None else edges.rearranged(lambda field: field[beneath, across])
         soft = None if edges is None else space.softness(edges)
         block = block_of(
-            space, rows, body, planes, self.approaches, self.stride, self.rtol, self.single, soft=soft
-        )
+            space, rows, body, planes, self.approaches, self.stride, self.rtol, self.single, soft=soft,
+            forces_alone=True,
+        )  # fmt: skip
         if self.device is None:
             solve_block(space, block)
         else:

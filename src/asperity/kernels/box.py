@@ -35,7 +35,7 @@ class Box(NamedTuple):
     step: NDArray  # change of the pressure, Pa
     response: NDArray  # what the step displaces, m
     z: NDArray  # preconditioned residual, Pa
-    # at a given load, about the pressure that an approach adds on the free set, Pa/m
+    # about the pressure that an approach adds on the free set, Pa/m: at a load, and to look ahead
     unit: NDArray
     masked: NDArray  # residual on the free set, between REACH rows of zeros
     work: NDArray  # room for convolutions
@@ -74,7 +74,7 @@ def empty_box(nx: int, ny: int, room: NDArray) -> Box:
         box.overlap[q] = -FAR
         box.residual[q] = FAR
     for q in range(size):
-        box.pressure[q] = box.direction[q] = box.response[q] = 0.0
+        box.pressure[q] = box.direction[q] = box.response[q] = box.unit[q] = 0.0
     for q in range(2 * frame):  # what is before the pressure and behind it
         box.framed[q if q < frame else size + q] = 0.0
     for q in range(2 * REACH * pitch):  # and the residual
@@ -83,23 +83,33 @@ def empty_box(nx: int, ny: int, room: NDArray) -> Box:
 
 
 @compiled(**INNER)
-def cut(outer: Box, row: int, column: int, b: Box) -> None:
-    """Copy overlap, pressure and residual of a part of a box, from a row and a column on, to an empty box."""
+def _copy_part(
+    source: NDArray, start: int, pitch: int, target: NDArray, first: int, step: int, b: Box
+) -> None:
+    """Copy as many rows and columns as a box has, rows a pitch apart to others a step apart."""
     for i in range(b.nx):
-        here = i * b.pitch
-        there = (row + i) * outer.pitch + column
-        for j in range(b.ny):
-            b.overlap[here + j] = outer.overlap[there + j]
-            b.pressure[here + j] = outer.pressure[there + j]
-            b.residual[here + j] = outer.residual[there + j]
+        known = source[start + i * pitch : start + i * pitch + b.ny]
+        row = target[first + i * step : first + i * step + b.ny]
+        for j in range(len(row)):
+            row[j] = known[j]
+
+
+@compiled(**INNER)
+def cut(outer: Box, row: int, column: int, b: Box) -> None:
+    """Copy what is known of a part of a box, from a row and a column on, to an empty box."""
+    start = row * outer.pitch + column
+    _copy_part(outer.overlap, start, outer.pitch, b.overlap, 0, b.pitch, b)
+    _copy_part(outer.pressure, start, outer.pitch, b.pressure, 0, b.pitch, b)
+    _copy_part(outer.residual, start, outer.pitch, b.residual, 0, b.pitch, b)
+    _copy_part(outer.unit, start, outer.pitch, b.unit, 0, b.pitch, b)
 
 
 @compiled(**INNER)
 def paste(b: Box, outer: Box, row: int, column: int) -> None:
-    """Copy the pressure of a part back, as in `cut`."""
-    for i in range(b.nx):
-        for j in range(b.ny):
-            outer.pressure[(row + i) * outer.pitch + column + j] = b.pressure[i * b.pitch + j]
+    """Copy pressure and `unit` of a part back, as in `cut`."""
+    start = row * outer.pitch + column
+    _copy_part(b.pressure, 0, b.pitch, outer.pressure, start, outer.pitch, b)
+    _copy_part(b.unit, 0, b.pitch, outer.unit, start, outer.pitch, b)
 
 
 @compiled(**INNER, **REASSOCIATE)

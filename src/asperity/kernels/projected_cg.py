@@ -106,6 +106,8 @@ LEAST, MOST = 0.1, 3.0
 """Bounds of the expected length of a step; an exact inverse as preconditioner would make it one."""
 PATIENCE, OFTEN = 100, 10
 """Iterations after which every tenth is a step of the projected gradient."""
+SETTLED = 1.25
+"""Relative change of the force expected, over `rtol`, from which on it counts as settled."""
 CONJUGATE, PRECONDITIONED, STEEPEST = range(3)
 """What a step aims at: each is tried if the one before would do no work."""
 
@@ -119,6 +121,7 @@ class Task(NamedTuple):
     compliance: float
     largest: float  # largest overlap of the undeformed bodies, m
     rtol: float  # largest complementarity residual relative to that overlap
+    loose: float  # likewise, if the force settles: see `force_lacked`; zero where it is not looked at
     # no pressure of unit norm displaces by more, m/Pa: bounds the step of the projected gradient
     softest: float
     max_iterations: int  # iterations allowed
@@ -159,7 +162,14 @@ def _turn_to_gradient(b: Box, level: float) -> None:
     """Set the search direction to that of steepest descent, where cells at a bound may go, too."""
     for q in range(len(b.z)):
         b.direction[q] = level - b.residual[q]
-        b.unit[q] = 1.0
+
+
+@compiled(**INNER, **REASSOCIATE)
+def _sum(values: NDArray) -> float:
+    total = values.dtype.type(0.0)
+    for q in range(len(values)):
+        total += values[q]
+    return total
 
 
 @compiled(**INNER, **REASSOCIATE)
@@ -197,6 +207,9 @@ def _aim(b: Box, aim: int, beta: float, length: float, level: float, task: Task)
     """Set direction and step; return the work of the step and how many cells the bounds held back."""
     if aim == STEEPEST:
         _turn_to_gradient(b, level)
+        if task.total >= 0.0:
+            for q in range(len(b.unit)):
+                b.unit[q] = 1.0
         length = 1.0 / task.softest
     else:
         _turn(b, beta if aim == CONJUGATE else 0.0)
@@ -239,13 +252,47 @@ def _advance(b: Box, rims: Rims | None, share: float, hardness: float, margin: f
             b.residual[q] = rims.bare[q] + factor * b.response[q]
 
 
+@compiled(**CALLED, **REASSOCIATE)
+def force_lacked(b: Box) -> float:
+    """What the sum of the pressure lacks, Pa, but for what is of second order.
+
+    On a contact set the pressure lacks A⁻¹r, where r is the gap that is left to close, and its sum lacks rᵀu,
+    where Au = 1: what an approach adds to the pressure. If u is near that, the error is a product of two
+    small ones.
+    """
+    total = b.z.dtype.type(0.0)
+    for q in range(len(b.unit)):
+        total -= b.unit[q] * b.residual[q]
+    return total
+
+
+@compiled(**INNER, **REASSOCIATE)
+def _missing(b: Box) -> float:
+    """What `unit` lacks along the step, as its sum less what it displaces there, Pa m."""
+    total = b.z.dtype.type(0.0)
+    for q in range(len(b.step)):
+        total += b.step[q] - b.unit[q] * b.response[q]
+    return total
+
+
+@compiled(**INNER, **REASSOCIATE)
+def _complete(b: Box, share: float, hardness: float) -> None:
+    """Add a share of the step to `unit`, and keep it on the cells between the bounds."""
+    real = b.z.dtype.type
+    zero = real(0.0)
+    factor = real(share)
+    cap = real(hardness)
+    for q in range(len(b.unit)):
+        p = b.pressure[q]
+        added = b.unit[q] + factor * b.step[q]
+        added = added if p > zero else zero
+        b.unit[q] = added if p < cap else zero
+
+
 @compiled(**INNER, **REASSOCIATE)
 def _yield(pressure: NDArray, compliance: float, response: NDArray) -> float:
     """Add what bodies yield to a pressure, Pa, to what it displaces, m; return that."""
-    total = pressure.dtype.type(0.0)
-    for q in range(len(pressure)):
-        total += pressure[q]
-    yielded = response.dtype.type(compliance * total)
+    yielded = response.dtype.type(compliance * _sum(pressure))
     for q in range(len(response)):
         response[q] += yielded
     return yielded
@@ -260,6 +307,34 @@ def true_residual(c: Convolution, b: Box, task: Task, edges: SoftCells) -> None:
     for q in range(len(b.residual)):
         b.residual[q] = b.response[q] - b.overlap[q]
     sink(b, edges)
+
+
+@compiled(**INNER, **REASSOCIATE)
+def _survey_row(b: Box, i: int, level: float, hardness: float, rims: Rims | None) -> tuple[float, float]:
+    """Count the cells of a row under pressure or in overlap; return that and the sum of the pressure, Pa.
+
+    Their number in each column is added to the first row of `direction`, and that of `step` is raised to the
+    largest residual there.
+    """
+    real = b.z.dtype.type
+    zero, one = real(0.0), real(1.0)
+    level, cap = real(level), real(hardness)
+    row = slice(i * b.pitch, i * b.pitch + b.ny)
+    pressure, residual, shares = b.pressure[row], b.residual[row], b.z[row]
+    touched, worst = b.direction[: b.ny], b.step[: b.ny]
+    count, total = zero, zero
+    for j in range(len(pressure)):
+        p = pressure[j]
+        r = residual[j] - level
+        there = one if p > zero or r < zero else zero
+        unmet = max(abs(r) if p < cap else r, zero) * there
+        if rims is not None:
+            unmet *= shares[j]
+        touched[j] += there
+        worst[j] = max(worst[j], unmet)
+        count += there
+        total += p
+    return count, total
 
 
 @compiled(**CALLED)
@@ -278,21 +353,24 @@ def survey(
         set_shares(b, rims, stiffness)
     first = b.nx
     end = 0
-    left = b.ny
-    right = 0
+    left = 0
+    right = b.ny
     worst, total = 0.0, 0.0
+    for j in range(b.ny):
+        b.direction[j] = b.step[j] = 0.0
     for i in range(b.nx):
-        for j in range(b.ny):
-            p = b.pressure[i * b.pitch + j]
-            r = b.residual[i * b.pitch + j] - level
-            if p > 0.0 or r < 0.0:
-                unmet = abs(r) if p < task.hardness else r
-                worst = max(worst, unmet if rims is None else unmet * b.z[i * b.pitch + j])
-                total += p
-                first = min(first, i)
-                end = i + 1
-                left = min(left, j)
-                right = max(right, j + 1)
+        touched, carried = _survey_row(b, i, level, task.hardness, rims)
+        total += carried
+        if touched > 0.0:
+            first = min(first, i)
+            end = i + 1
+    if end:
+        while not b.direction[left] > 0.0:
+            left += 1
+        while not b.direction[right - 1] > 0.0:
+            right -= 1
+    for j in range(left, right):
+        worst = max(worst, float(b.step[j]))
     level -= task.compliance * total
     return (worst, level, first, end, left, right) if end else (worst, level, 0, 0, 0, 0)
 
@@ -316,12 +394,12 @@ def _to_gradient(
 @compiled(**CALLED)
 def solve(
     c: Convolution, taps: NDArray, b: Box, task: Task, done: int, rims: Rims | None, edges: SoftCells
-) -> tuple[int, bool]:
+) -> tuple[int, bool, bool]:
     """Solve the task on a box, from a residual and a pressure that is within the bounds and carries the load.
 
     Kernel in m/Pa, taps of `inverse_stencil` in Pa/m; rims where cells are covered in part, as `set_rims`
-    left them; the edges in this box. Returns the iterations in all, with those done before, and whether there
-    is a step that lowers the energy: if not, rounding allows no more.
+    left them; the edges in this box. Returns the iterations in all, with those done before; whether there is
+    a step that lowers the energy: if not, rounding allows no more; and whether the force has settled.
     """
     cap = task.hardness
     at_load = task.total >= 0.0
@@ -332,12 +410,20 @@ def solve(
     iteration = done
     moving = True
     yielded = 0.0
+    looks_ahead = task.loose > 0.0
+    settled = False
+    expected = np.inf
     for q in range(len(b.pressure)):
         yielded += task.compliance * b.pressure[q]
     while iteration < task.max_iterations:
         if at_load:
             level = find_level(b, cap)
         tolerance = task.rtol * (task.largest + level - yielded)
+        if looks_ahead:
+            force = _sum(b.pressure) + force_lacked(b)
+            settled = abs(force - expected) <= SETTLED * task.rtol * force
+            expected = force
+            tolerance *= task.loose / task.rtol if settled else 1.0
         violated = _free(b.pressure, b, cap, level, tolerance)
         if rims is not None and 0.0 < violated <= rims.number[1]:
             violated = still_violated(b, rims, violated, tolerance, taps[0])
@@ -361,8 +447,11 @@ def solve(
         sink_by_step(b, edges)
         further = _yield(b.step, task.compliance, b.response) if task.compliance > 0.0 else 0.0
         curvature = _dot(b.step, b.response)
+        missing = _missing(b) if looks_ahead else 0.0
         if rims is not None:
-            curvature += bend(b, rims)
+            bent, beside = bend(b, rims)
+            curvature += bent
+            missing -= beside
         moving = curvature > 0.0
         if not moving:
             break
@@ -376,7 +465,9 @@ def solve(
         elif share > 1.0 and _leaves(b, share, cap):
             share = 1.0
         _advance(b, rims, share, cap, margin)
+        if looks_ahead:
+            _complete(b, missing / curvature, cap)
         sink_by_share(b, edges, share)
         set_rims(b, rims, level, taps[0])
         yielded += share * further
-    return iteration, moving
+    return iteration, moving, settled

@@ -410,13 +410,16 @@ def weigh_step(b: Box, rims: Rims, target: NDArray) -> tuple[float, float, float
 
 
 @compiled(**INNER)
-def bend(b: Box, rims: Rims) -> float:
-    """Add up −step · (quotient of the gap) · step: the curvature that cells at rims add to a step."""
+def bend(b: Box, rims: Rims) -> tuple[float, float]:
+    """Add up −step · (quotient of the gap) · step: the curvature that cells at rims add; and with `unit`."""
     stored = 0.0
+    beside = 0.0
     for k in range(rims.number[1]):
-        step = b.step[rims.cell[k]]
-        stored -= rims.kept[_place_of(k) + OWN * CHUNK] * step * step
-    return stored
+        q = rims.cell[k]
+        closed = -rims.kept[_place_of(k) + OWN * CHUNK] * b.step[q]
+        stored += closed * b.step[q]
+        beside += closed * b.unit[q]
+    return stored, beside
 
 
 @compiled(**INNER)

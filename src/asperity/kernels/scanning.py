@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 from asperity.kernels.at_load import carry
 from asperity.kernels.box import Box, box_room, cut, empty_box, overlap_box, paste
 from asperity.kernels.edges import SoftCells, find_edges, soft_cells
-from asperity.kernels.influence import UNIT, Influence, convolution, is_prepared
+from asperity.kernels.influence import UNIT, Influence, convolution, is_prepared, whole_vectors
 from asperity.kernels.lanes import VECTOR_BYTES, aligned, lanes, width
 from asperity.kernels.options import CALLED, INNER, LOOP, ONCE, REASSOCIATE, compiled
-from asperity.kernels.projected_cg import Task, solve, survey, true_residual
+from asperity.kernels.projected_cg import Task, force_lacked, solve, survey, true_residual
 from asperity.kernels.rims import (
     Rims,
     cells_beside,
@@ -30,8 +30,16 @@ REACH = 1.3
 """How far beyond the expected approach a solution at a given load may go; more makes the box larger."""
 NOTHING = 1e-12
 """Share of the pressure that the overlap lets expect below which a start is taken for zero."""
-TRUSTED = 1e-10
-"""Tolerance down to which a residual in double precision need not be computed anew: less is rounding."""
+TRUSTED, TRUSTED_SINGLE = 1e-10, 1e-5
+"""Tolerances down to which a residual need not be computed anew, in double and in single precision.
+
+Less is rounding."""
+LOOSE = 6.0
+"""Residual that is enough where the force has settled, over that which is asked for else.
+
+Errors of forces are then no larger than those of pressures that meet the tolerance."""
+PAYS = 1.6
+"""Work of a convolution over that on a smaller box, from which on it pays to cut that box out of it."""
 
 
 class Room(NamedTuple):
@@ -56,6 +64,9 @@ class Block(NamedTuple):
     compliance: float  # of bodies that yield to the sum of the pressure, m/Pa; zero at a load
     hardness: float  # Pa
     rtol: float  # largest complementarity residual relative to the largest overlap
+    loose: (
+        float  # likewise, where the force has settled; zero where pressures are asked for, not forces alone
+    )
     max_iterations: int  # of a contact
     room: Room  # from `room`
     gap: NDArray  # (nx, ny), room for the gap at a position, m
@@ -64,6 +75,8 @@ class Block(NamedTuple):
     expected: NDArray
     # (2, k, nx, ny), of the last two positions, Pa: even ones first, odd ones second
     pressures: NDArray
+    rise: NDArray  # (nx, ny), room for about what an approach adds to the pressure, Pa/m
+    rises: NDArray  # (k, nx, ny), what it was found to add at the last position, Pa/m
     solved: NDArray  # (k,), positions in contact one after the other up to the last
     totals: NDArray  # (k, positions), receives the sum of the pressure over the cells, Pa
     # (k, positions), receives the largest complementarity residual relative to the largest overlap
@@ -124,7 +137,7 @@ def solve_positions(
                 continue
             _set_start(b, m, i, touch)
             pressure = b.pressures[m % 2, i]
-            found = solve_contact(known, b, b.approaches[i], pressure)
+            found = solve_contact(known, b, b.approaches[i], pressure, b.rises[i])
             if not found.prepared:
                 return m, i, found.nx, found.ny
             b.solved[i] += 1
@@ -180,10 +193,14 @@ def _set_start(b: Block, m: int, i: int, touch: float) -> None:
     if corrected and below == 3:
         by_position, by_approach = misfits(here[i - 1], expected, here[i - 2], here[i - 3], _share(b, i - 1))
         across = by_approach < by_position
+    moved = b.stride if along else 0 if across else len(b.start)
     if along and b.solved[i] > 1:
-        continue_rolling(before[i], here[i], b.stride, b.stride, b.hardness, now)
+        moved = continue_rolling(before[i], here[i], b.stride, b.stride, b.hardness, now)
     elif along:
         continue_pressure(before[i], here[i], b.stride, 0.0, b.hardness, now)
+    if b.loose > 0.0:
+        known = b.rises[i - 1 if across else i]
+        continue_pressure(known, known, moved, 0.0, np.inf, b.rise)
     if across:
         share = _share(b, i) if below > 1 else 0.0
         other = here[i - 2] if below > 1 else here[i - 1]
@@ -213,14 +230,14 @@ def _on_edge(pressure: NDArray) -> float:
 
 
 @compiled(**ONCE)
-def solve_contact(known: Influence, b: Block, approach: float, pressure: NDArray) -> Solution:
+def solve_contact(known: Influence, b: Block, approach: float, pressure: NDArray, rise: NDArray) -> Solution:
     """Solve 0 ≤ p ≤ hardness ⟂ K p + gap − approach on a grid; no pressure acts outside of the overlap's box.
 
     Gap, start and all else are those of a block; approach in m, positive closing. The load is less than the
     hardness over all that overlap; the approach then is REACH times what is expected beyond first touch.
     Bodies that yield have the given approach without their compliance. The start is within the bounds, and
     zero on all of the overlap if nothing is known. `pressure` receives the pressure, unless a convolution is
-    missing.
+    missing, and so does `rise` what an approach adds to it, if only the force has to be exact.
     """
     hardness = b.hardness
     load = b.load
@@ -238,10 +255,14 @@ def solve_contact(known: Influence, b: Block, approach: float, pressure: NDArray
     everywhere = convolution(known, nx, ny)
     edges = b.room.edges
     softest = known.softest + compliance * nx * ny + find_edges(outer, edges, first, left)
-    task = Task(hardness, load, compliance, largest, b.rtol, softest, b.max_iterations)
     guessed = not _enter(outer, b.gap, approach, b.start, first, left, NOTHING * known.taps[0] * largest)
+    looks_ahead = b.loose > 0.0
+    loose = min(b.loose, b.rtol) if guessed else b.loose  # what follows starts from it
+    task = Task(hardness, load, compliance, largest, b.rtol, loose, softest, b.max_iterations)
     if guessed:
         _guess(outer, largest, largest / REACH if load >= 0.0 else largest, known.taps[0])
+    elif looks_ahead:
+        _enter_rise(outer, b.rise, first, left, hardness)
     if load >= 0.0:
         carry(outer, hardness, load, known.taps[0])
     true_residual(everywhere, outer, task, edges)
@@ -251,16 +272,19 @@ def solve_contact(known: Influence, b: Block, approach: float, pressure: NDArray
     worst, level, top, bottom, near, far = survey(outer, task, b.room.rims, known.taps[0])
     iterations: int = np.int64(0)  # type: ignore[assignment]  # a literal one would be compiled apart
     moving = True
+    asked = b.rtol
     last = (0, 0, 0, 0)
-    while moving and worst > b.rtol * (largest + level) and iterations < b.max_iterations:
+    while moving and worst > asked * (largest + level) and iterations < b.max_iterations:
         row, rows = _grown(known, top, bottom, nx)
         column, columns = _grown(known, near, far, ny)
+        part = _work(known, nx, ny) >= PAYS * _work(known, rows, columns)
+        if not part:
+            row, rows, column, columns = 0, nx, 0, ny
         if not is_prepared(known, rows, columns):
             return Solution(False, False, 0, 0.0, 0.0, 0.0, rows, columns)
         before = worst
         again = last == (row, column, rows, columns)
         last = (row, column, rows, columns)
-        part = rows < nx or columns < ny
         inner = outer
         if part:
             inner = empty_box(rows, columns, b.room.inner)
@@ -268,9 +292,10 @@ def solve_contact(known: Influence, b: Block, approach: float, pressure: NDArray
             move_rims(inner, b.room.rims, outer.pitch, row, column)
             lay_bare(inner, b.room.rims)
             find_edges(inner, edges, first + row, left + column)
-        iterations, moving = solve(
+        iterations, moving, settled = solve(
             convolution(known, rows, columns), known.taps, inner, task, iterations, b.room.rims, edges
         )
+        asked = loose if settled else b.rtol
         if part:
             paste(inner, outer, row, column)
             move_rims(outer, b.room.rims, inner.pitch, -row, -column)
@@ -280,8 +305,11 @@ def solve_contact(known: Influence, b: Block, approach: float, pressure: NDArray
             take_off(outer, b.room.rims)
         worst, level, top, bottom, near, far = survey(outer, task, b.room.rims, known.taps[0])
         moving = moving and not (again and worst > 0.9 * before)  # else rounding hides what is left
-    total = _leave(outer, pressure, first, left)
-    converged = worst <= b.rtol * (largest + level)
+    total = _leave(outer, outer.pressure, pressure, first, left)
+    if looks_ahead:
+        total += force_lacked(outer)
+        _leave(outer, outer.unit, rise, first, left)
+    converged = worst <= asked * (largest + level)
     return Solution(True, converged, iterations, worst / (largest + level), total, level, nx, ny)
 
 
@@ -292,15 +320,27 @@ def _enter(
     """Set overlap and pressure, if it is not too small to matter; return whether there is any."""
     added = 0.0
     for i in range(b.nx):
-        here = i * b.pitch
-        row = gap[first + i]
-        known = start[first + i]
-        for j in range(b.ny):
-            b.overlap[here + j] = approach - row[left + j]
-            p = known[left + j] if known[left + j] > least else 0.0
-            b.pressure[here + j] = p
+        row = slice(i * b.pitch, i * b.pitch + b.ny)
+        overlap, pressure = b.overlap[row], b.pressure[row]
+        under = gap[first + i, left:]
+        known = start[first + i, left:]
+        for j in range(len(overlap)):
+            overlap[j] = approach - under[j]
+            p = known[j] if known[j] > least else 0.0
+            pressure[j] = p
             added += p
     return added > 0.0
+
+
+@compiled(**INNER)
+def _enter_rise(b: Box, rise: NDArray, first: int, left: int, hardness: float) -> None:
+    """Set what an approach adds to the pressure of the cells between the bounds."""
+    for i in range(b.nx):
+        row = slice(i * b.pitch, i * b.pitch + b.ny)
+        pressure, unit = b.pressure[row], b.unit[row]
+        known = rise[first + i, left:]
+        for j in range(len(unit)):
+            unit[j] = known[j] if 0.0 < pressure[j] < hardness else 0.0
 
 
 @compiled(**INNER)
@@ -331,21 +371,30 @@ def _scale(b: Box, hardness: float) -> bool:
 @compiled(**INNER)
 def _recurs(b: Box, rtol: float) -> bool:
     """Whether a residual that was carried on from step to step is good enough."""
-    return rtol >= TRUSTED and lanes(b.residual) == VECTOR_BYTES // 8
+    return rtol >= (TRUSTED if lanes(b.residual) == VECTOR_BYTES // 8 else TRUSTED_SINGLE)
 
 
 @compiled(**INNER)
-def _leave(b: Box, pressure: NDArray, first: int, left: int) -> float:
-    """Copy the pressure; return its sum over the cells."""
-    for i in range(pressure.shape[0]):
-        for j in range(pressure.shape[1]):
-            pressure[i, j] = 0.0
+def _work(known: Influence, nx: int, ny: int) -> float:
+    """Work of a convolution on a box: the numbers that it transforms."""
+    mx, my = known.lengths[-(-nx // UNIT)], known.lengths[-(-ny // UNIT)]
+    return float(whole_vectors(mx, lanes(known.spectra)) * my)
+
+
+@compiled(**INNER)
+def _leave(b: Box, field: NDArray, target: NDArray, first: int, left: int) -> float:
+    """Copy a field of a box to the window, which is zero else; return its sum over the cells."""
+    for i in range(target.shape[0]):
+        row = target[i]
+        for j in range(len(row)):
+            row[j] = 0.0
     total = 0.0
     for i in range(b.nx):
-        for j in range(b.ny):
-            p = b.pressure[i * b.pitch + j]
-            pressure[first + i, left + j] = p
-            total += p
+        known = field[i * b.pitch : i * b.pitch + b.ny]
+        row = target[first + i, left:]
+        for j in range(len(known)):
+            row[j] = known[j]
+            total += known[j]
     return total
 
 
@@ -387,12 +436,13 @@ def continue_pressure(
 @compiled(**CALLED, nogil=True)
 def continue_rolling(
     last: NDArray, before: NDArray, stride: int, stride_before: int, cap: float, start: NDArray
-) -> None:
+) -> int:
     """Continue the pressures of two contacts to a third, with the surface or with the window.
 
     As in `continue_pressure`; the window moved by `stride_before` rows between the two. Where asperities
     carry, their pressures move with the surface; where the whole patch carries, and more so in long strides,
-    it stays in the window. Taken is what would have been nearer from the one before to the last.
+    it stays in the window. Taken is what would have been nearer from the one before to the last. Returns the
+    rows that it moves by.
     """
     nx = len(last)
     with_surface, in_window = 0.0, 0.0
@@ -403,8 +453,9 @@ def continue_rolling(
     if with_surface <= in_window:
         share = 1.0 if stride == stride_before else 0.0
         continue_pressure(last, before, stride, share, cap, start)
-    else:
-        continue_pressure(last, before, np.int64(0), 0.0, cap, start)
+        return stride
+    continue_pressure(last, before, np.int64(0), 0.0, cap, start)
+    return 0
 
 
 @compiled(**INNER, **REASSOCIATE)
