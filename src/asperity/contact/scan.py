@@ -55,7 +55,8 @@ def rtol_for(force_accuracy: float) -> float:
     no more than k_t max|e|. Relative to the force, with F growing as the n-th power of the overlap, that is n
     times the relative residual: 1.5 for Hertz, 1 to 3 for rough contacts, if the residual had everywhere its
     largest value and one sign. It alternates: on smooth, rough and flowing contacts, from first touches to
-    heavy loads, the largest error found is twice the relative residual
+    heavy loads, the largest error found is twice the relative residual; so it is where a scan, which knows
+    what an approach adds to the pressure, stops at a residual six times as large
     (``benchmarks/force_accuracy.py``).
     """
     allowed = "a number above 0, at most 0.1, as 1e-4"
