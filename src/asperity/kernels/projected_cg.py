@@ -275,6 +275,18 @@ def _missing(b: Box) -> float:
     return total
 
 
+@compiled(**INNER)
+def _curvature(b: Box, rims: Rims | None, looks_ahead: bool) -> tuple[float, float]:
+    """Curvature of the energy along the step, Pa m, and what `unit` lacks there, if that is asked for."""
+    curvature = _dot(b.step, b.response)
+    missing = _missing(b) if looks_ahead else 0.0
+    if rims is not None:
+        bent, beside = bend(b, rims)
+        curvature += bent
+        missing -= beside
+    return curvature, missing
+
+
 @compiled(**INNER, **REASSOCIATE)
 def _complete(b: Box, share: float, hardness: float) -> None:
     """Add a share of the step to `unit`, and keep it on the cells between the bounds."""
@@ -409,12 +421,10 @@ def solve(
     length = 1.0
     iteration = done
     moving = True
-    yielded = 0.0
+    yielded = task.compliance * _sum(b.pressure)
     looks_ahead = task.loose > 0.0
     settled = False
     expected = np.inf
-    for q in range(len(b.pressure)):
-        yielded += task.compliance * b.pressure[q]
     while iteration < task.max_iterations:
         if at_load:
             level = find_level(b, cap)
@@ -446,12 +456,7 @@ def solve(
         convolve(c, b.step, b.nx, b.ny, b.pitch, b.work, b.response)
         sink_by_step(b, edges)
         further = _yield(b.step, task.compliance, b.response) if task.compliance > 0.0 else 0.0
-        curvature = _dot(b.step, b.response)
-        missing = _missing(b) if looks_ahead else 0.0
-        if rims is not None:
-            bent, beside = bend(b, rims)
-            curvature += bent
-            missing -= beside
+        curvature, missing = _curvature(b, rims, looks_ahead)
         moving = curvature > 0.0
         if not moving:
             break

@@ -241,7 +241,6 @@ def solve_contact(known: Influence, b: Block, approach: float, pressure: NDArray
     """
     hardness = b.hardness
     load = b.load
-    compliance = b.compliance
     largest, first, end, left, right = overlap_box(b.gap, approach, b.room.lowest)
     beside = cells_beside(b.room.rims)
     first = max(first - beside, 0)
@@ -254,14 +253,13 @@ def solve_contact(known: Influence, b: Block, approach: float, pressure: NDArray
     outer = empty_box(nx, ny, b.room.outer)
     everywhere = convolution(known, nx, ny)
     edges = b.room.edges
-    softest = known.softest + compliance * nx * ny + find_edges(outer, edges, first, left)
+    softest = known.softest + b.compliance * nx * ny + find_edges(outer, edges, first, left)
     guessed = not _enter(outer, b.gap, approach, b.start, first, left, NOTHING * known.taps[0] * largest)
-    looks_ahead = b.loose > 0.0
     loose = min(b.loose, b.rtol) if guessed else b.loose  # what follows starts from it
-    task = Task(hardness, load, compliance, largest, b.rtol, loose, softest, b.max_iterations)
+    task = Task(hardness, load, b.compliance, largest, b.rtol, loose, softest, b.max_iterations)
     if guessed:
         _guess(outer, largest, largest / REACH if load >= 0.0 else largest, known.taps[0])
-    elif looks_ahead:
+    elif b.loose > 0.0:
         _enter_rise(outer, b.rise, first, left, hardness)
     if load >= 0.0:
         carry(outer, hardness, load, known.taps[0])
@@ -275,11 +273,8 @@ def solve_contact(known: Influence, b: Block, approach: float, pressure: NDArray
     asked = b.rtol
     last = (0, 0, 0, 0)
     while moving and worst > asked * (largest + level) and iterations < b.max_iterations:
-        row, rows = _grown(known, top, bottom, nx)
-        column, columns = _grown(known, near, far, ny)
-        part = _work(known, nx, ny) >= PAYS * _work(known, rows, columns)
-        if not part:
-            row, rows, column, columns = 0, nx, 0, ny
+        row, rows, column, columns = _part(known, nx, ny, top, bottom, near, far)
+        part = rows < nx or columns < ny
         if not is_prepared(known, rows, columns):
             return Solution(False, False, 0, 0.0, 0.0, 0.0, rows, columns)
         before = worst
@@ -306,7 +301,7 @@ def solve_contact(known: Influence, b: Block, approach: float, pressure: NDArray
         worst, level, top, bottom, near, far = survey(outer, task, b.room.rims, known.taps[0])
         moving = moving and not (again and worst > 0.9 * before)  # else rounding hides what is left
     total = _leave(outer, outer.pressure, pressure, first, left)
-    if looks_ahead:
+    if b.loose > 0.0:
         total += force_lacked(outer)
         _leave(outer, outer.unit, rise, first, left)
     converged = worst <= asked * (largest + level)
@@ -406,6 +401,18 @@ def _grown(known: Influence, first: int, end: int, n: int) -> tuple[int, int]:
         return 0, n
     length = min(known.lengths[-(-needed // UNIT)], n)
     return min(max(0, first - (length - (end - first)) // 2), n - length), length
+
+
+@compiled(**INNER)
+def _part(
+    known: Influence, nx: int, ny: int, top: int, bottom: int, near: int, far: int
+) -> tuple[int, int, int, int]:
+    """First row, rows, first column and columns of the part to solve on; all of them if less does not pay."""
+    row, rows = _grown(known, top, bottom, nx)
+    column, columns = _grown(known, near, far, ny)
+    if _work(known, nx, ny) < PAYS * _work(known, rows, columns):
+        return 0, nx, 0, ny
+    return row, rows, column, columns
 
 
 # --- pressures to start from, continued from those of the last contacts
