@@ -264,7 +264,9 @@ def test_rounding_leaves_a_contact_as_uncertain_as_is_told(step, radius, spacing
     assert 0.2 * told < off < 1.1 * told
 
 
-@pytest.mark.parametrize(("step", "told"), [(1e-4, "0.1 mm"), (1e-5, None), (1e-6, None), (0.0, None)])
+@pytest.mark.parametrize(
+    ("step", "told"), [(1e-4, "0.1 mm"), (2e-5, "20 µm"), (1e-5, None), (1e-6, None), (0.0, None)]
+)
 def test_sections_that_are_printed_too_coarsely_say_so_in_the_check(step, told):
     _, case = met_of(step, 0.3, 1e-3, np.random.default_rng(5))
     with PhysicsWarning.caught() as caught:
@@ -272,9 +274,10 @@ def test_sections_that_are_printed_too_coarsely_say_so_in_the_check(step, told):
     said = [str(each.message) for each in caught if "printed" in str(each.message)]
     assert len(said) == (told is not None)
     if told:
+        how = "altogether" if step == 1e-4 else r"by up to \d+ %"
         assert re.fullmatch(
             f"wheel.profile and track.rail_profile: positions printed to {told} leave the radius of the "
-            r"contact across the path, [\d.]+ mm, uncertain (by up to \d+ %|altogether): the gap is [\d.]+ "
+            rf"contact across the path, [\d.]+ mm, uncertain {how}: the gap is [\d.]+ "
             "µm deep where they touch. Take tables with more digits.",
             said[0],
         )

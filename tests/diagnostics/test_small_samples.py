@@ -4,6 +4,7 @@ import tracemalloc
 
 import numpy as np
 import pytest
+from scipy.io import wavfile
 
 from asperity.diagnostics import diagnose
 from asperity.diagnostics.envelopes import mean_spectrum
@@ -11,6 +12,7 @@ from asperity.diagnostics.prominence import STANDS_OUT, Prominence
 from asperity.diagnostics.recording import Recording
 from asperity.ranks import Ranked
 from asperity.structures.ball_bearing import BallBearing
+from asperity.studies.recorded import read_record, read_signal
 from faulty_signals import faulty_signal
 
 RATE, SPEED = 12_000.0, 29.3
@@ -102,7 +104,7 @@ def test_the_clearest_comb_of_a_long_spectrum_is_sought_in_little_memory():
     time = np.arange(count) / RATE
     envelope = 1.0 + 0.1 * sum(np.cos(2.0 * np.pi * 107.3 * n * time) for n in range(1, 6))
     envelope += 0.1 * np.random.default_rng(0).normal(size=count)
-    record = Prominence.of_envelopes([envelope], RATE, 0.5 * RATE)
+    record = Prominence.of_envelopes([envelope], RATE, 0.5 * RATE, 1, np.inf)
     low, high = 10.0, 2_500.0
     tracemalloc.start()
     try:
@@ -129,3 +131,51 @@ def test_a_mean_of_spectra_holds_one_of_them_beside_the_sum():
         finally:
             tracemalloc.stop()
     assert peaks[2] - peaks[1] < 1.1 * 8 * 2**15
+
+
+@pytest.mark.parametrize(
+    ("words", "kept"),
+    [
+        ("{:.0f}", "i1"),  # to the last bit in each
+        ("{:.0f}00", "i2"),
+        ("{:.0f}.25", "f4"),
+        ("{:.0f}.1", "f8"),
+        ("{:.0f}00000", "f4"),
+    ],
+)
+def test_numbers_of_a_text_stay_in_the_smallest_type_that_has_them(tmp_path, words, kept):
+    file = tmp_path / "run.txt"
+    file.write_text("\n".join(words.format(each + 0.0) for each in WHOLE) + "\n")
+    found = read_record(file, RATE)
+    assert found.values.dtype == np.dtype(kept)
+    np.testing.assert_array_equal(found.values, [float(words.format(each + 0.0)) for each in WHOLE])
+    assert read_signal(file, RATE)[0].dtype == np.float64
+
+
+@pytest.mark.parametrize(
+    ("kind", "kept"), [("i2", "i2"), ("u1", "u1"), ("f4", "f4"), ("i8", "f8"), ("f2", "f2")]
+)
+def test_an_array_stays_in_its_type_and_has_its_numbers(tmp_path, kind, kept):
+    np.save(tmp_path / "run.npy", np.abs(WHOLE).astype(kind))
+    found = read_record(tmp_path / "run.npy", RATE)
+    assert found.values.dtype == np.dtype(kept)
+    np.testing.assert_array_equal(found.values, np.abs(WHOLE))
+
+
+@pytest.mark.parametrize(("kind", "full", "middle"), [("u1", 128.0, 128.0), ("i2", 32_768.0, 0.0)])
+def test_shares_of_full_scale_are_exact_in_small_floats(tmp_path, kind, full, middle):
+    samples = (WHOLE + middle).astype(kind)
+    wavfile.write(tmp_path / "run.wav", int(RATE), samples)
+    found = read_record(tmp_path / "run.wav")
+    assert found.values.dtype == np.float32
+    np.testing.assert_array_equal(found.values, (samples.astype(float) - middle) / full)
+
+
+def test_whole_numbers_beside_times_with_a_gap_have_nan_in_it(tmp_path):
+    times = np.delete(np.arange(2_000) / 1_000.0, np.arange(700, 720))
+    rows = [f"{at:.3f},{n % 7}" for n, at in enumerate(times)]
+    file = tmp_path / "run.csv"
+    file.write_text("\n".join(["time (s),a", *rows]))
+    values = read_record(file).values
+    assert np.flatnonzero(np.isnan(values)).tolist() == list(range(700, 720))
+    np.testing.assert_array_equal(values[~np.isnan(values)], np.arange(1_980) % 7)

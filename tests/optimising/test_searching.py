@@ -166,3 +166,14 @@ def test_a_search_that_does_not_settle_says_so():
     assert not settled
     missed = [abs(trial.level - 5.0) for trial in trials[1:]]
     assert missed[-1] == min(missed)  # and the best that was met is the last
+
+
+@pytest.mark.parametrize(("lay", "best"), [((2.0, 8.0), 2.0), ((0.5, 8.0), 1.0)])
+def test_a_lay_that_may_not_be_is_not_taken_however_quiet(lay, best):
+    """A response that rises with the lay from that of the case on, 1, which the bounds hold or do not."""
+
+    def roll(levels, lateral):
+        return allocation.Trial(levels, lateral, np.array([max(lateral, 1.0 / lateral)]), 0.0)
+
+    best_of = allocation._best_lay(roll, roll(np.zeros(1), 1.0), lay, lambda words: None)
+    assert best_of.lateral == pytest.approx(best)
