@@ -6,7 +6,7 @@ from scipy.signal import resample, resample_poly
 
 from asperity.diagnostics import Hypothesis, diagnose, diagnosis_sentence
 from asperity.diagnostics.confidence import Basis
-from asperity.diagnostics.decision import _side_band
+from asperity.diagnostics.decision import _seconds, _side_band
 from asperity.diagnostics.shaft import has_own_lines, of_shaft_or_mains
 from asperity.structures.ball_bearing import BallBearing
 from faulty_signals import GEOMETRIES, faulty_signal, orders
@@ -209,3 +209,10 @@ def test_a_sound_bearing_without_a_line_of_the_shaft_has_that_said_first(seed, f
     signal = faulty_signal(None, SPEED, RATE, 2.0, noise=0.3, shaft=0.0, seed=seed)
     found = diagnose(signal, RATE, TONES["6205"], SPEED * factor)
     assert diagnosis_sentence(found).startswith("The line of the shaft is not found at ")
+
+
+@pytest.mark.parametrize(("depth", "is_second"), [(0.31, True), (0.29, False)])
+def test_a_second_part_moves_the_envelope_by_half_as_much_as_the_first_at_least(depth, is_second):
+    best = Hypothesis("outer", SPEED, 105.0, 3.0, 40.0, 0.6)
+    other = Hypothesis("ball", SPEED, 141.7, 2.5, 30.0, depth)
+    assert _seconds([other], best, TONES["6205"], 0.5) == [other] * is_second
