@@ -200,7 +200,8 @@ class Case(RollingCase):
         """Some texture, and waves that the grid resolves."""
         surface = self.surface
         spacing = self.contact.spacing
-        rolling = self.rolling.has_own_texture or self.rolling.flat is not None
+        body = self.rolling
+        rolling = body.has_own_texture or body.flat is not None
         if not (surface.has_texture or rolling or surface.smooth):
             allowed = (
                 f"file, rms, line, spectrum or a defect in [surface]; roughness, line or a flat in "
@@ -235,7 +236,8 @@ class Case(RollingCase):
                 f"at most 1 / ({SAMPLING} highest_frequency) = {rounded(1e6 / (SAMPLING * highest), 4)} us"
             )
             yield InputError("numerics.time_step", f"{self.time_step * 1e6:g} us", allowed)
-        widest = 2 * min(self.rolling.radius, self.rolling.across, self.rolled_over.radius_across)
+        body = self.rolling
+        widest = 2 * min(body.radius, body.across, self.rolled_over.radius_across)
         if self.contact.window > widest:
             allowed = f"at most the smallest diameter of the bodies, {written(widest, 'm', 'mm')}"
             yield InputError("contact.window", written(self.contact.window, "m", "mm"), allowed)

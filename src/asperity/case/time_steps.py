@@ -79,8 +79,9 @@ def _wanted(mode: float, resonance: float, case: RollingCase) -> float:
 
 def _resonance(case: RollingCase, stiffness: float, inverse_mass: float) -> float:
     """Natural frequency, Hz, of what rolls on contacts, N/m, on what moves like so much per mass, 1/kg."""
-    rolling = 1.0 / case.rolling.contact_mass
-    return math.sqrt(stiffness * (rolling + len(case.rolling.offsets) * inverse_mass)) / (2.0 * math.pi)
+    body = case.rolling
+    moved = 1.0 / body.contact_mass + len(body.offsets) * inverse_mass
+    return math.sqrt(stiffness * moved) / (2.0 * math.pi)
 
 
 def _looked_at(case: RollingCase, model: "Modal", stiffness: float, step: float) -> tuple[float, float]:
