@@ -10,7 +10,7 @@ from asperity.errors import Outcome
 from asperity.progress import Progress
 from asperity.rolling import assembly
 from asperity.rolling.course import Course, laid_together
-from asperity.rolling.ground import ground_of, warn_if_bent
+from asperity.rolling.ground import ground_of, small_motion, warn_if_bent
 from asperity.rolling.ledger import Ledger, ledger_of
 from asperity.rolling.mechanism import Mechanism
 from asperity.rolling.rest import standing
@@ -78,6 +78,8 @@ def carried(
 def _warn_if_bent(mechanism: Mechanism, displaced: Array) -> None:
     """Compare displacements of structures under their contacts (n, t), m, with what their theory allows."""
     for index, structure in enumerate(mechanism.structures):
+        if small_motion(structure) is None:
+            continue
         alone = [[side.structure for side in contact.sides] == [index] for contact in mechanism.contacts]
         warn_if_bent(structure, displaced[alone])
 

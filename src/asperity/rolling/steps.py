@@ -225,6 +225,8 @@ def missed_by_powers(body: Body, h: float, coordinates: Array, rates: Array, for
 
 def padded(parts: Sequence[NDArray[Any]]) -> NDArray[Any]:
     """Stack arrays of different sizes, (parts, ...), with zeros behind each."""
+    if len({part.shape for part in parts}) == 1:
+        return np.stack(parts)
     sizes = np.max([part.shape for part in parts], axis=0).astype(int)
     stack = np.zeros((len(parts), *sizes), dtype=parts[0].dtype)
     for k, part in enumerate(parts):
