@@ -86,6 +86,15 @@ def test_its_page_tells_how_its_texture_is_found_again(folder, tmp_path):
         assert (tmp_path / "again" / "out" / name).read_bytes() == (folder[0] / name).read_bytes()
 
 
+def test_the_run_after_names_its_texture_by_the_file_beside_the_case(folder):
+    """It said that this was made from Python, and stands in no file."""
+    out = folder[0]
+    after = asperity.open_result(out / "after" / "run.nc").attrs
+    assert "in_memory" not in after
+    assert 'spectrum = "texture.csv"' in after["case"]
+    assert (out / "case.toml").read_text("utf-8").endswith(after["case"])
+
+
 def test_its_document_and_its_page_are_what_the_documentation_says(folder):
     out, told, _ = folder
     page = (Path(__file__).parents[2] / "docs" / "reference" / "json.md").read_text(encoding="utf-8")

@@ -20,6 +20,7 @@ from asperity.reporting import page
 from asperity.results import save
 from asperity.scenes.report import PAGE as REPORT
 from asperity.scenes.report import write_page
+from asperity.schema import provenance
 from asperity.terminal import say, say_files
 from asperity.text_files import write_csv
 from asperity.written_numbers import capital
@@ -66,9 +67,11 @@ def run_optimisation(
         found = searched(case, aim, progress)
         told: ToldOptimisation = function_named(optimisation_of(case).told_by)(found)
         with files.together(directory, last=FILES["case"]) as new:
-            _written(found, told, _remake(case, aim), new, report=report)
             keys = in_toml(found.case, in_memory=lambda *_: FILES["texture"])
             text = toml.toml_text({"kind": found.case.kind, **keys})
+            found.result_after.attrs[provenance.CASE.name] = text  # its texture is no longer in memory alone
+            found.result_after.attrs.pop(provenance.IN_MEMORY.name, None)
+            _written(found, told, _remake(case, aim), new, report=report)
             files.write_bytes(new / FILES["case"], f"{mark_of('texture', asked, text)}{text}".encode())
             written = {what: path for what, path in written.items() if (new / FILES[what]).exists()}
     warn(met := warnings_of(found.result_before))
