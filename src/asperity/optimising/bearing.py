@@ -364,7 +364,7 @@ def _within(sought: Callable[[Array], OptimisedBearing], limits: Array) -> Optim
     found = [sought(limits)]
     lowered = np.zeros(len(limits))
     while (missed := _most_missed(found[-1])).any() and len(found) <= CORRECTIONS:
-        lowered = lowered + missed
+        lowered = lowered + np.where(missed > 0.0, missed + AIMED_BELOW, 0.0)
         try:
             found.append(sought(limits * 10.0 ** (-lowered / 20.0)))
         except ComputationError:  # nothing keeps lower ones
