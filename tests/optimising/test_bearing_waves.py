@@ -4,6 +4,7 @@ import csv
 import json
 import re
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -245,3 +246,37 @@ def test_roughness_and_the_spectrum_are_changed_with_their_phases():
     np.testing.assert_allclose(same.line(64, 3), case.balls.texture().line(64, 3), atol=1e-20)
     louder = bearing.with_energies(case, bands, np.array([1.0, 1.0, 1.0, 1.0, 1.0, 4.0])).balls
     assert louder.roughness == pytest.approx(10e-9)
+
+
+def test_limits_are_lowered_by_all_that_was_missed_so_far():
+    """What is rolled is 1 dB above what was sought, and 2 dB above at lower limits: 1, then 2 dB lower."""
+    sought = []
+
+    def of(kept):
+        sought.append(20.0 * np.log10(kept))
+        over = sought[-1] + (1.0 if len(sought) == 1 else 2.0)
+        return SimpleNamespace(missed={"areal": np.maximum(over, 0.0)})
+
+    found = bearing._within(of, np.ones(3))
+    assert not found.missed["areal"].any()
+    lowered = [-each[0] for each in sought]
+    assert lowered == pytest.approx([0.0, 1.0 + AIMED_BELOW, 2.0 + AIMED_BELOW])
+
+
+def test_a_limit_just_above_what_stays_is_kept_by_half_of_what_is_left():
+    """0.01 dB above: nothing lies 0.025 dB below it."""
+    stays, alone = np.array([4e-6, 0.0, 0.0]), np.array([[3e-6, 0.0, 0.0]])
+    aim = bearing.BearingAim(low_band=4e-6 * 10.0 ** (0.01 / 20.0), reach="60 dB")
+    bands = [bearing.PartBand("balls", (3,), 1e-7)]
+    trials, rests = bearing._search(
+        lambda energies: np.sqrt(stays**2 + energies @ alone**2), alone, stays, bands, aim, aim.limits
+    )
+    assert rests
+    half = 0.5 * (aim.low_band**2 - 4e-6**2)
+    assert trials[-1].energies == pytest.approx([half / 3e-6**2], rel=1e-6)
+
+
+def test_a_limit_that_the_lowest_energies_miss_by_rounding_is_kept_by_them():
+    weights, lowest = np.ones((1, 2)), np.full(2, 0.5)
+    found = cheapest(weights, np.array([1.0 - 5e-10]), np.ones(2), lowest, np.ones(2))
+    assert found == pytest.approx(lowest)
