@@ -96,7 +96,7 @@ class TestWith:
 
     def test_laws_follow_the_surface_until_they_are_chosen(self):
         line = ROUGH.with_(surface={"rms": None, "spectrum": "iso3095"})
-        assert line.laws == ("hertz-filtered", "linear-filtered", "linear")
+        assert line.laws == ("hertz-filtered", "linear-filtered")
         assert listed(line, "laws")["is_default"]
         chosen = ROUGH.with_(laws=["areal"])
         with pytest.raises(CaseError, match='"areal" with a path given as a line'):

@@ -152,4 +152,4 @@ def test_what_is_planned_of_a_run_up_says_of_which_speed_tones_are():
     films = dict(expected(prepare_bearing(turning(RUN_UP, lubricant=oil, rotating="5 N")))[0])
     assert any(each.startswith("film, inner ring") and each.endswith(AT) for each in films)
     assert films["load that turns"].endswith(f"33.33 ms{AT}")
-    assert rows["runs"] == "table, areal, hertz"
+    assert rows["runs"] == "table, hertz"

@@ -178,7 +178,7 @@ def test_a_law_is_shown_or_not_in_all_figures_at_once_and_what_is_no_law_in_its_
 def test_a_law_that_is_unticked_is_one_click_away(browser, tmp_path):
     figure = PageFigure("run", "Forces", "", CHARTS["run"], "", NUMBERS)
     colours = page_colours([BLUE, VERMILLION])
-    words = {"title": "", "summary": "", "version": "", "files": {}, "blocks": [figure]}
+    words = {"title": "", "summary": "", "version": "", "files": {}, "blocks": [figure], "remake": None}
     path = tmp_path / "page.html"
     path.write_text(
         whole_page("figures.html.jinja", [figure], colours, ["linear"], **words), encoding="utf-8"

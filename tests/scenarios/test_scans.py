@@ -73,7 +73,9 @@ def test_contacts_and_steps_are_counted():
     assert work.steps == round(4e-3 / prepared.case.time_step)
     scans = {f"scan for the {name}": scan.positions * scan.states for name, scan in work.scans.items()}
     assert set(work.scans) == {"filters", "path"}
-    assert work.solutions == scans | {"direct": work.steps}
+    path = work.scans["path"]
+    most = {"scan for the path": path.positions * (path.states + path.farther)}
+    assert work.solutions == scans | most | {"direct": work.steps}
     parts = work.time.parts
     for name, count in scans.items():
         assert parts[f"the {name}"] == pytest.approx(work.tried.scanned[name[13:]] * count)

@@ -9,7 +9,6 @@ from types import SimpleNamespace
 import h5py
 import numpy as np
 import pytest
-from scipy.signal import resample_poly
 
 import asperity
 from asperity import laws
@@ -176,14 +175,6 @@ def test_thinned_signals_hold_what_fewer_samples_hold_and_nothing_more():
     assert thinned(kept, 8)[inside] == pytest.approx(kept[::8][inside], abs=2e-3)
     assert np.abs(thinned(lost, 8)[inside]).max() < 2e-3  # it would be seen at 14 kHz
     assert thinned(kept, 1) is kept
-
-
-@pytest.mark.parametrize("count", [700, 701, 22, 2])
-def test_signals_are_thinned_as_another_program_does(count):
-    signal = np.random.default_rng(count).normal(size=(2, 3, count)).cumsum(axis=-1)
-    expected = resample_poly(signal, 1, 7, axis=-1, padtype="line")
-    np.testing.assert_allclose(thinned(signal, 7), expected, rtol=0.0, atol=1e-12)
-    assert thinned(signal[:0], 7).shape == (0, 3, expected.shape[-1])
 
 
 def test_the_cage_slips_within_its_bounds_and_by_its_share(runs):

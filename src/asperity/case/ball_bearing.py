@@ -114,7 +114,7 @@ class BearingUnderLoad(AnyCase):
     )
     laws: tuple[str, ...] = key(
         ListOf(LAW, least=1, once=True),
-        ["table", "areal", "hertz"],
+        ["table", "hertz"],
         "laws of the contact force; the first is the main one, direct for a few turns at most",
     )
     seed: int = key(INDEX, 1, "seed of everything random")

@@ -161,7 +161,6 @@ class RailSurface(Surface):
 
 DEFAULTS = {
     "speed": "56 m/s",
-    "laws": ["areal", "linear-filtered"],
     "start": "0 m",
     "duration": "1 s",
     "settling": "0.3 s",

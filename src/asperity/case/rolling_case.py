@@ -50,7 +50,7 @@ class RollingCase(AnyCase):
     )
     laws: tuple[str, ...] = key(
         ListOf(LAW, least=1, once=True),
-        ["areal", "shifted", "printed", "table", "linear-filtered", "linear"],
+        ["areal", "linear-filtered"],
         "laws of the contact force that are computed, others once they are named here; the first is the main "
         "one, direct where a flat or a joint is rolled over",
     )

@@ -25,8 +25,10 @@ MOST_STEPS = 10**8
 STEPS_PER_PERIOD = 20  # of the highest frequency
 STEPS_PER_RESONANCE = 12
 """Time steps in a period of the contact resonance, at least, where the case says nothing."""
+SHIFTED = "shifted"
+"""Main law of those over a line beside samples of the surface."""
 SMOOTH = "hertz-filtered"
-"""Main law of those where there is no sample of the surface."""
+"""Main law of those over a line where there is no sample of the surface."""
 RADIATES = {"rail_radiation", "sleeper_length", "sleeper_width", "wheel_width"}
 """Keys of [noise] of what radiates; all others are of levels beside the track."""
 OF_A_TRACK = ("noise", "sideways", "numerics.kernel", "numerics.poles")
@@ -145,8 +147,8 @@ class Case(RollingCase):
         if not self.surface.has_line:
             return usual
         allowed = _allowed(line=True, samples=self.surface.has_samples)
-        smooth = () if self.surface.has_samples else (SMOOTH,)
-        return (*smooth, *(law for law in usual if law in allowed))
+        main = SHIFTED if self.surface.has_samples else SMOOTH
+        return (main, *(law for law in usual if law in allowed))
 
     @property
     def cells_at_rims(self) -> tuple[str, ...]:

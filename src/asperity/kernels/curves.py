@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.kernels.options import CALLED, LOOP, REASSOCIATE, compiled
+from asperity.kernels.options import CALLED, LOOP, compiled
 
 BLOCK = 512
 """Points whose coefficients are found at once."""
@@ -77,16 +77,6 @@ def splines_along(values, index):  # type: ignore[no-untyped-def]
                 + w3 * coefficients[row + 3, j]
             )
     return result
-
-
-@compiled(**LOOP, **REASSOCIATE)
-def weighted_sums(values, weights, every, sums):  # type: ignore[no-untyped-def]
-    """Sums (k,) of as many values as there are weights, times these, each from `every` values further on."""
-    for k in range(sums.shape[0]):
-        total = 0.0
-        for i in range(weights.shape[0]):
-            total += weights[i] * values[k * every + i]
-        sums[k] = total
 
 
 STRIDE = 128

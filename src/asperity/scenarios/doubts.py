@@ -135,7 +135,7 @@ def doubt_sizes(case: Case, over: object) -> None:
     if isinstance(over, Track):
         _doubt_usual(case, OF_TRAINS, **{name: "wheel"})
         if case.speed > FASTEST_TRAIN:
-            _warn("speed", float(case.speed), "m/s", "no train has run faster than 575 km/h", "km/h")
+            _warn("speed", float(case.speed), "m/s", "no train has run faster than 160 m/s, 575 km/h", "km/h")
         _doubt_layers(over, case.over_name, load)
         _doubt_rail(over, case.over_name, over.mass_per_length)
         if over.sleeper_bending_stiffness is not None:

@@ -11,7 +11,6 @@ import numpy as np
 from asperity.arguments import Array
 from asperity.case.ball_bearing import BearingUnderLoad
 from asperity.errors import PhysicsWarning
-from asperity.kernels.curves import weighted_sums
 from asperity.laws import Need, spec_of
 from asperity.laws.film import WithFilm
 from asperity.laws.tilted import Tilted
@@ -50,8 +49,6 @@ ALIKE = 1e-6
 """Share of their loads by which balls may differ that are carried alike."""
 FORCES = ("inner_force", "outer_force")
 """They begin and end at once, where the filter rings: none is written that is below all that were found."""
-REACH, KAISER = 10, 5.0
-"""Of the low pass before samples are left out: its reach to either side, in samples that stay, and β."""
 SIGNALS = (*FORCES, "flank_force", "rib_force", "ball_motion", "inner_motion", "outer_motion", "acceleration")
 """What a run holds over time, beside what grows evenly."""
 
@@ -249,25 +246,11 @@ def cage_slip(case: BearingUnderLoad) -> Callable[[Array], Array]:
 
 
 def thinned(signal: Array, every: int) -> Array:
-    """A signal (…, n) at one of so many samples, without what the fewer samples do not hold.
-
-    From the line between its ends on, which is zero beyond them, it is averaged with the weights of an ideal
-    low pass under a Kaiser window (β = 5) that reaches over `REACH` of the fewer samples to either side.
-    """
+    """A signal (…, n) at one of so many samples, without what the fewer samples do not hold."""
     if every == 1:
         return signal
     if not signal.size:
         return signal[..., ::every]
-    reach = REACH * every
-    ideal = np.sinc(np.arange(-reach, reach + 1) / every) * np.kaiser(2 * reach + 1, KAISER)
-    count = signal.shape[-1]
-    along = np.arange(count) / max(count - 1, 1)
-    rows = signal.reshape(-1, count)
-    found = np.empty((len(rows), -(-count // every)))
-    beside = np.zeros(count + 2 * reach)
-    for row, averaged in zip(rows, found, strict=True):
-        line = row[0] + (row[-1] - row[0]) * along
-        np.subtract(row, line, out=beside[reach : reach + count])
-        weighted_sums(beside, ideal / ideal.sum(), every, averaged)
-        averaged += line[::every]
-    return found.reshape(*signal.shape[:-1], -1)
+    from scipy.signal import resample_poly
+
+    return resample_poly(signal, 1, every, axis=-1, padtype="line")
