@@ -3,12 +3,14 @@
 import json
 import math
 import warnings
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 import asperity
 from asperity.case.cases import as_case
-from asperity.case.time_steps import longest_step
+from asperity.case.time_steps import _resonance, longest_step
 from asperity.errors import PhysicsWarning
 from asperity.running import prepare_case
 from asperity.scenarios.prepared_bearing import prepare_bearing
@@ -127,3 +129,16 @@ def test_contacts_are_told_from_the_foremost_on():
     body = BOGIE | {"positions": ["0 m", "4 m", "9 m"]}
     uneven = as_case(ON_RAIL | {"kind": "bodies", "over": "track", "speed": "50 m/s", "body": body})
     assert uneven.contacts_behind == pytest.approx((0.0, 2.5, 5.0, 7.5, 9.0, 11.5))
+
+
+@pytest.mark.parametrize("contacts", [1, 2, 4])
+def test_the_resonance_of_several_contacts_on_one_mode_is_that_of_their_masses(contacts):
+    """Masses m, each on a spring k on one mass M that is free: the fastest of them move against it."""
+    m, k, other = 0.07, 3e7, 0.4
+    stiffness = k * np.eye(contacts + 1)
+    stiffness[-1, :-1] = stiffness[:-1, -1] = -k
+    stiffness[-1, -1] = contacts * k
+    mass = np.array([m] * contacts + [other])
+    fastest = np.linalg.eigvalsh(stiffness / np.sqrt(np.outer(mass, mass)))[-1]
+    case = SimpleNamespace(rolling=SimpleNamespace(contact_mass=m, offsets=(0.0,) * contacts))
+    assert _resonance(case, k, 1.0 / other) == pytest.approx(math.sqrt(fastest) / (2.0 * math.pi), rel=1e-12)
