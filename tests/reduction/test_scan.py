@@ -58,9 +58,8 @@ def test_each_position_is_a_contact_of_its_own(stride):
 def test_a_contact_that_stays_as_it_is_soon_takes_no_iteration():
     """A ball on a plane: the patch stays in the window, where asperities would move with the surface."""
     few, many = (half_space().scan(np.zeros((n, 41)), ball(), [0.2e-6, 0.3e-6]) for n in (44, 60))
-    assert (
-        few.sizes["position"] == 4
-    )  # the first two meet the tolerance in the force, the next in the pressure
+    # the first two meet the tolerance in the force, the next in the pressure
+    assert few.sizes["position"] == 4
     assert many.attrs["iterations"] == few.attrs["iterations"]
 
 

@@ -21,7 +21,7 @@ from asperity.scenarios.prepared_bearing import prepare_bearing
 from asperity.scenes import computed_bearing
 from asperity.scenes.bearing_heard import heard_group
 from asperity.scenes.bearing_validity import out_of_place
-from asperity.scenes.computed_bearing import bearing_rings, cage_slip, compute_bearing, thinned
+from asperity.scenes.computed_bearing import bearing_rings, cage_slip, compute_bearing
 from asperity.scenes.figures.bearing import ball_sliding_table, ball_turn, load_zone
 from asperity.scenes.figures.sideways import friction_table
 from asperity.scenes.report import page_of
@@ -166,15 +166,6 @@ def test_lines_are_looked_for_where_the_slip_of_the_cage_puts_them():
     assert found[schema.LINES_FOUND] == [[1.0, 0.0, 0.0]]
     assert found[schema.LINE_FREQUENCY][0][0] == pytest.approx(slowed * np.arange(1, 6), abs=0.5)
     assert found[schema.ENVELOPE_FREQUENCY][-1] > 5.0 * INNER
-
-
-def test_thinned_signals_hold_what_fewer_samples_hold_and_nothing_more():
-    time = np.arange(80_000) / 400e3
-    kept, lost = (np.sin(2.0 * np.pi * frequency * time) for frequency in (5e3, 36e3))
-    inside = slice(100, -100)
-    assert thinned(kept, 8)[inside] == pytest.approx(kept[::8][inside], abs=2e-3)
-    assert np.abs(thinned(lost, 8)[inside]).max() < 2e-3  # it would be seen at 14 kHz
-    assert thinned(kept, 1) is kept
 
 
 def test_the_cage_slips_within_its_bounds_and_by_its_share(runs):

@@ -206,12 +206,15 @@ class Prominence:
         Hz."""
         count = int(np.ceil((high - low) / self.step * HARMONICS / WITHIN * PER_STEP)) + 2
         step = (high - low) / (count - 1)
-        parts = (
-            low + step * np.arange(first, min(first + TOGETHER, count), dtype=np.float64)
-            for first in range(0, count, TOGETHER)
-        )
-        there = [(part[clear > 0.0], clear[clear > 0.0]) for part in parts for clear in (self.combs(part),)]
-        fundamental, clear = (np.concatenate(each) for each in zip(*there, strict=True))
+        places: list[Array] = []
+        clearness: list[Array] = []
+        for first in range(0, count, TOGETHER):
+            part = low + step * np.arange(first, min(first + TOGETHER, count), dtype=np.float64)
+            clear = self.combs(part)
+            places.append(part[clear > 0.0])
+            clearness.append(clear[clear > 0.0])
+        fundamental = np.concatenate(places)
+        clear = np.concatenate(clearness)
         found: list[tuple[float, float, float]] = []
         for _ in range(CANDIDATES):
             if not clear.any():

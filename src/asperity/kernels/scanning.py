@@ -64,9 +64,7 @@ class Block(NamedTuple):
     compliance: float  # of bodies that yield to the sum of the pressure, m/Pa; zero at a load
     hardness: float  # Pa
     rtol: float  # largest complementarity residual relative to the largest overlap
-    loose: (
-        float  # likewise, where the force has settled; zero where pressures are asked for, not forces alone
-    )
+    loose: float  # likewise where the force has settled; zero if pressures are asked for, not forces alone
     max_iterations: int  # of a contact
     room: Room  # from `room`
     gap: NDArray  # (nx, ny), room for the gap at a position, m
