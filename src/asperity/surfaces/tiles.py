@@ -51,6 +51,8 @@ DEGREE = 13
 """Degree of the polynomials by which the kernel is found between two points, to rounding."""
 TOGETHER = 2**9
 """Places for which the kernel is found at a time."""
+KEPT = 2**18
+"""Complex random numbers that are kept, at most, 4 MB: the next case often has a surface of the same ones."""
 
 Waves = Complex
 
@@ -80,8 +82,19 @@ def random_of(seed: int, *place: int) -> np.random.Generator:
 
 
 def deviates(seed: int, shape: tuple[int, ...], *place: int) -> Waves:
-    """Complex numbers whose parts are standard normal; a larger first axis begins with the smaller one."""
-    return random_of(seed, *place).standard_normal((*shape, 2)).view(np.complex128)[..., 0]
+    """Complex numbers whose parts are standard normal; a larger first axis begins with the smaller one.
+
+    They are not to be written to.
+    """
+    draw = _deviates if math.prod(shape) <= KEPT else _deviates.__wrapped__
+    return draw(seed, shape, *place)
+
+
+@lru_cache(maxsize=16)
+def _deviates(seed: int, shape: tuple[int, ...], *place: int) -> Waves:
+    drawn = random_of(seed, *place).standard_normal((*shape, 2)).view(np.complex128)[..., 0]
+    drawn.flags.writeable = False
+    return drawn
 
 
 @dataclass(frozen=True)
