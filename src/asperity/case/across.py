@@ -120,10 +120,9 @@ def complete(line: Profile, key: str) -> Profile:
 def _away_from_rest(y: Array, z: Array) -> Array:
     """Heights (n,), m, from the line that half of a section may leave (repeated medians, Siegel 1982)."""
     some = np.unique(np.linspace(0, len(y) - 1, min(len(y), COMPARED)).astype(int))
-    across = np.subtract.outer(y[some], y[some])
-    up = np.subtract.outer(z[some], z[some])
-    np.fill_diagonal(across, np.nan)
-    slope = float(np.median(np.nanmedian(up / across, axis=1)))
+    others = ~np.eye(len(some), dtype=bool)
+    across, up = (np.subtract.outer(each[some], each[some])[others] for each in (y, z))
+    slope = float(np.median(np.median((up / across).reshape(len(some), -1), axis=1)))
     return z - slope * y - np.median(z[some] - slope * y[some])
 
 

@@ -1,6 +1,5 @@
 """What a measured surface lacks or has too much: points without a height, and spikes."""
 
-import warnings
 from dataclasses import replace
 from typing import TypeVar
 
@@ -120,8 +119,16 @@ def _local_median(heights: Array) -> Array:
     )
     rows = max(1, PIECE // heights.shape[1])
     pieces = (around[first : first + rows] for first in range(0, len(heights), rows))
-    with warnings.catch_warnings(action="ignore", category=RuntimeWarning):  # where all are missing
-        return np.concatenate([np.nanmedian(piece, axis=(-2, -1)) for piece in pieces])
+    return np.concatenate([_median_of_known(piece.reshape(*piece.shape[:2], -1)) for piece in pieces])
+
+
+def _median_of_known(values: Array) -> Array:
+    """Median of those along the last axis that are not missing: NumPy's, of masked arrays, takes six times as long."""
+    ordered = np.sort(values, axis=-1)  # missing ones come last
+    known = np.count_nonzero(np.isfinite(ordered), axis=-1, keepdims=True)
+    middle = np.concatenate([(known - 1) // 2, known // 2], axis=-1)
+    found: Array = np.take_along_axis(ordered, middle, axis=-1).mean(axis=-1)
+    return found
 
 
 def _typical(distance: Array) -> Array:
@@ -136,7 +143,7 @@ def _typical(distance: Array) -> Array:
     each = padded.reshape(nx, TILE, ny, TILE).swapaxes(1, 2).reshape(nx, ny, -1)
     known = np.isfinite(each).any(axis=-1)
     median = np.full((nx, ny), everywhere)
-    median[known] = np.maximum(np.nanmedian(each[known], axis=-1), everywhere)
+    median[known] = np.maximum(_median_of_known(each[known]), everywhere)
     largest = scipy.ndimage.maximum_filter(median, 3, mode="nearest")
     spread = np.kron(largest, np.ones((TILE, TILE)))
     return spread[: distance.shape[0], : distance.shape[1]]
