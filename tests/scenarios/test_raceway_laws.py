@@ -135,7 +135,7 @@ def test_positions_on_smooth_raceways_have_the_levels_of_every_row():
 def test_positions_on_long_smooth_raceways_have_the_bands_of_every_row(rms):
     """On waves of 1.6 half axes and more."""
     texture = AroundTexture(roughness=rms, longest=0.3 * MM, shortest=0.06 * MM)
-    surface = raceway_on(CONTACT, LOAD, 2.5 * MM, texture, seed=4)
+    surface = raceway_on(CONTACT, LOAD, 1.5 * MM, texture, seed=4)
     wave = 1.6 * ALONG
     every, on = (OnRaceway(CONTACT, surface, LOAD, shortest=each) for each in (0.0, wave))
     assert (every.scanned_stride, on.scanned_stride) == (1, 3)
@@ -200,9 +200,9 @@ def test_states_and_positions_that_a_motion_asks_for_have_the_forces_of_all():
     assert on.wider(wider, least, most) == wider
 
 
-@pytest.mark.parametrize("waves", [2, 6])
+@pytest.mark.parametrize("waves", [1, 3])
 def test_waves_are_felt_by_sin_q_over_q(waves):
-    radius, texture = 0.35 * MM, AroundTexture(waves=(waves,), amplitudes=(5 * NM,))
+    radius, texture = 0.175 * MM, AroundTexture(waves=(waves,), amplitudes=(5 * NM,))
     surface = raceway_on(CONTACT, LOAD, radius, texture, seed=3)
     long = 2 * np.pi * radius / waves > FOLLOWED * ALONG
     assert long == (not surface.heights.any()) == bool(surface.line.any())

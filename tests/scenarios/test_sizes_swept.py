@@ -18,6 +18,7 @@ from asperity.parameters import Number, Quantity
 from asperity.running import prepare_case
 from asperity.structures.modal import ModalStructure
 
+SMOOTH = {"smooth": True}
 ROUGH = {"rms": "0.04 um", "longest": "0.4 mm", "shortest": "60 um"}
 MASS_ABOVE = {"masses": ["0.4 kg"], "springs": ["0.1 MN/m"], "dampers": ["10 N s/m"]}
 BODY_ABOVE = {"masses": ["4 t"], "springs": ["1.2 MN/m"], "dampers": ["10 kN s/m"]}
@@ -26,11 +27,12 @@ TRAIN = {"axle_positions": ["0 m", "2.5 m", "19 m", "21.5 m"], "vehicle_length":
 X = np.linspace(0.0, 1.0, 41)
 GUIDE = ModalStructure(X, [200.0], 0.01, np.sin(np.pi * X)[:, None], modal_masses=[2.0])
 BASES = {
-    "ball-on-beam": small_cases.BALL | {"laws": ["linear"], "settling": "60 ms"},
+    "ball-on-beam": small_cases.BALL | {"laws": ["linear"], "settling": "60 ms", "surface": SMOOTH},
     "wheel-on-rail": small_cases.HEARD
-    | {"kind": "wheel-on-rail", "duration": "60 ms", "settling": "60 ms", "surface": {"smooth": True}}
-    | {"contact": {"spacing": "0.5 mm", "samples": 2}, "wheel": {"section": "rigid"}},
-    "bodies": small_cases.BODIES | {"laws": ["linear"], "settling": "60 ms"},
+    | {"kind": "wheel-on-rail", "duration": "20 ms", "settling": "60 ms", "surface": SMOOTH}
+    | {"contact": {"spacing": "0.5 mm", "samples": 2}, "wheel": {"section": "rigid"}}
+    | {"numerics": {"highest_frequency": "2 kHz", "kernel": "scatter"}},
+    "bodies": small_cases.BODIES | {"laws": ["linear"], "settling": "60 ms", "surface": SMOOTH},
     "ball-bearing": small_cases.BEARING,
     "roller-bearing": small_cases.BEARING | {"kind": "roller-bearing", "bearing": {"name": "NU205"}}
     | {"radial": "1 kN", "laws": ["areal"], "fault": {}},

@@ -31,7 +31,8 @@ def doubt_surface(surface: Raceway, approach: float, rolls: str) -> None:
         return
     turns = np.fft.rfft(surface.line)
     turns[:2] = 0.0
-    waves = surface.heights + np.fft.irfft(turns, len(surface.line))[:, None]
+    heights = surface.heights if surface.heights.any() else surface.heights[:, :1]  # all lines are alike
+    waves = heights + np.fft.irfft(turns, len(surface.line))[:, None]
     for heights in (waves, surface.line):
         highest = 0.5 * float(np.ptp(heights))
         received = (

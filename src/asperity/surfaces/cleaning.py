@@ -123,7 +123,7 @@ def _local_median(heights: Array) -> Array:
 
 
 def _median_of_known(values: Array) -> Array:
-    """Median of those along the last axis that are not missing: NumPy's, of masked arrays, takes six times as long."""
+    """Median of those along the last axis that are not missing; NumPy takes six times as long for few."""
     ordered = np.sort(values, axis=-1)  # missing ones come last
     known = np.count_nonzero(np.isfinite(ordered), axis=-1, keepdims=True)
     middle = np.concatenate([(known - 1) // 2, known // 2], axis=-1)

@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -59,7 +58,7 @@ class Edges:
             require(least >= 0.0 and largest <= most, what, f"{least:.4g} to {largest:.4g}", allowed)
             object.__setattr__(self, name, values)
 
-    def sides(self, cells: Any = ...) -> Array:
+    def sides(self, cells: Flags) -> Array:
         """What the two sides of some cells are along the normal (2, ...), m: their width, added up."""
         along, across = self.spacing
         normal = self.normal[cells]
@@ -68,14 +67,17 @@ class Edges:
     @cached_property
     def places(self) -> Array:
         """Distances of the middles of cells from the edge over their width along its normal (rows, lines)."""
-        return self.distance / self.sides().sum(axis=0)
+        found = self.distance / self.spacing[1]  # that of an edge along the rows, and where there is none
+        tilted = self.normal > 0.0
+        found[tilted] = self.distance[tilted] / self.sides(tilted).sum(axis=0)
+        return found
 
-    @property
+    @cached_property
     def sound(self) -> Flags:
         """Cells with the heights of the sound surface, though they may lie beyond the edge in part."""
         return self.places > FIRST
 
-    @property
+    @cached_property
     def crossed(self) -> Flags:
         """Those of them that give way more than others, because an edge crosses them or is close."""
         return self.sound & (self.places < 0.5)

@@ -171,18 +171,25 @@ class Fault:
         a = 0.5 * self.length
         b = 0.5 * self.width
         depth = self.depth
+        if self.shape == "spall":
+            return self._hollow(np.minimum(a - abs(x), b - abs(y)))
         rho = np.hypot(x / a, y / b)
+        if self.shape == "pit":
+            return self._hollow((1.0 - rho) * min(a, b))
         bowl = np.clip(1.0 - rho**2, 0.0, None)
-        if self.shape in HOLLOWS:
-            inside = (1.0 - rho) * min(a, b) if self.shape == "pit" else np.minimum(a - abs(x), b - abs(y))
-            floor = -depth * np.clip(inside / self.edge if self.edge else np.sign(inside), 0.0, 1.0)
-            beyond = -inside / self.burr_width
-            wave = np.sin(np.pi * beyond) ** 2
-            return floor + self.burr * np.where((beyond > 0.0) & (beyond < 1.0), wave, 0.0)
         if self.shape in ("mark", "particle"):
             return -depth * bowl if self.shape == "mark" else depth * bowl**2
         rim = np.sin(np.pi * np.clip((rho - 1.0) / self.rim_width, 0.0, 1.0)) ** 2
         return self.highest * rim - depth * bowl**2
+
+    def _hollow(self, inside: Array) -> Array:
+        """Heights of a pit or spall and its burr, m, at distances inside its outline, m."""
+        floor: Array = -self.depth * np.clip(inside / self.edge if self.edge else np.sign(inside), 0.0, 1.0)
+        if not self.burr:
+            return floor
+        beyond = -inside / self.burr_width
+        wave = np.sin(np.pi * beyond) ** 2
+        return floor + self.burr * np.where((beyond > 0.0) & (beyond < 1.0), wave, 0.0)
 
     def outline(self, along: ArrayLike, across: ArrayLike) -> tuple[Array, Array]:
         """Distance from the outline of a pit or spall, m, positive outside, and its normal's part along.
@@ -238,7 +245,8 @@ def lay(
                 sound = _lay_edge(edges, fault, under, (along, across))
                 laid = np.where(sound, np.maximum(laid, 0.0), laid)
             overlap |= bool(np.any(result[under] * laid))
-            np.add.at(result, under, laid)
+            for turn in range(0, len(under), shape[0]):
+                result[under[turn : turn + shape[0]]] += laid[turn : turn + shape[0]]
     if overlap:
         OutOfRangeWarning.warn(
             "Faults overlap: where they do, their heights add up. Lay them apart, or as one map."
@@ -288,7 +296,9 @@ def _lay_edge(edges: Edges, fault: Fault, under: NDArray[Any], places: tuple[Arr
     edges.distance[under] = np.where(nearer, distance, edges.distance[under])
     edges.normal[under] = np.where(nearer, normal, edges.normal[under])
     parts = (np.arange(PARTS) + 0.5) / PARTS - 0.5
-    heights = [fault.heights(places[0] + i * dx, places[1] + j * dy) for i in parts for j in parts]
-    depth = np.mean(np.maximum(np.negative(heights), 0.0), axis=0)
-    edges.drop[under] += np.where(own.crossed, depth, 0.0)
+    along, across = (each[own.crossed] for each in np.broadcast_arrays(*places))
+    heights = [fault.heights(along + i * dx, across + j * dy) for i in parts for j in parts]
+    drop = np.zeros(distance.shape)
+    drop[own.crossed] = np.mean(np.maximum(np.negative(heights), 0.0), axis=0)
+    edges.drop[under] += drop
     return own.sound

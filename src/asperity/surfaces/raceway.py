@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Literal, Self
 
@@ -229,7 +230,7 @@ class Raceway:
         allowed = "8 rows or more, and an odd number of lines, so that one is the middle"
         require(shape[0] >= 8 and shape[1] % 2, "heights of the raceway", f"shape {shape}", allowed)
 
-    @property
+    @cached_property
     def damaged(self) -> Flags:
         """Where faults or their edges are (rows, lines)."""
         hollow = self.faults != 0.0
