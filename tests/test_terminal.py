@@ -80,9 +80,14 @@ def test_tables_stand_on_standard_output_in_a_notebook(capsys, monkeypatch):
 # --- the program, whoever reads what it says
 
 
+@pytest.fixture(scope="module", autouse=True)
+def one_cache(cache_of_module):
+    """A case is computed by the first command that checks it, which has all streams closed."""
+
+
 def run(command, folder, code=0):
     """What a command line of a shell, with ``asperity`` for the program, says on standard error."""
-    environment = os.environ | {"ASPERITY_CACHE": str(folder / "cache"), "PYTHONIOENCODING": "utf-8"}
+    environment = os.environ | {"PYTHONIOENCODING": "utf-8"}
     (folder / "case.toml").write_text(CASE)
     done = subprocess.run(
         ["bash", "-c", command.replace("asperity", f"'{sys.executable}' -m asperity", 1)],
@@ -93,16 +98,16 @@ def run(command, folder, code=0):
 
 
 @posix
-def test_a_reader_that_ends_is_no_failure(tmp_path):
-    assert "Error" not in run("asperity check case.toml | true; exit ${PIPESTATUS[0]}", tmp_path)
-    run("asperity --help 2>&1 | head -c 1; exit ${PIPESTATUS[0]}", tmp_path)
-
-
-@posix
-@pytest.mark.parametrize("closed", [">&-", "<&- >&- 2>&-"])
+@pytest.mark.parametrize("closed", ["<&- >&- 2>&-", ">&-"])
 def test_closed_streams_are_no_failure(tmp_path, closed):
     run(f"asperity check case.toml {closed}", tmp_path)
     run(f"asperity check absent.toml {closed}", tmp_path, code=2)
+
+
+@posix
+def test_a_reader_that_ends_is_no_failure(tmp_path):
+    assert "Error" not in run("asperity check case.toml | true; exit ${PIPESTATUS[0]}", tmp_path)
+    run("asperity --help 2>&1 | head -c 1; exit ${PIPESTATUS[0]}", tmp_path)
 
 
 @posix

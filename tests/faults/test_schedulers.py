@@ -68,6 +68,6 @@ def test_a_scheduler_that_is_lost_half_way(served, tmp_path, end):
     "address", ["tcp://127.0.0.1:9", "tcp://127.0.0.1:99999999", "tls://127.0.0.1:9", "nowhere at all"]
 )
 def test_an_address_where_nobody_is(monkeypatch, address):
-    monkeypatch.setattr(cluster, "PATIENCE", 1.0)
+    monkeypatch.setattr(cluster, "PATIENCE", 0.2)
     with pytest.raises(InputError, match=rf"^scheduler: received '{address}' .*'dask scheduler'"):
         cluster.cluster(address).__enter__()
