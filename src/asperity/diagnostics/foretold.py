@@ -51,13 +51,8 @@ def _parts(values: Samples) -> Array:
 
 def _foreteller(parts: Array) -> Array:
     """Weights (ORDER + 1,) of samples, the last one first, by which what is foretold is taken off one."""
-    best = np.zeros(ORDER + 1)
-    least = np.inf
-    for part in parts:
-        rows = np.lib.stride_tricks.sliding_window_view(part, ORDER + 1)
-        weights, *_ = np.linalg.lstsq(rows[:, :-1], rows[:, -1], rcond=None)
-        missed = float(np.square(rows[:, -1] - rows[:, :-1] @ weights).sum())
-        if missed < least:
-            best = np.append(-weights, 1.0)
-            least = missed
-    return best[::-1]
+    rows = np.lib.stride_tricks.sliding_window_view(parts, ORDER + 1, axis=1)
+    missed = np.abs(np.linalg.qr(rows, mode="r")[:, -1, -1])  # what no sum of the other columns makes
+    best = rows[missed.argmin()]
+    weights, *_ = np.linalg.lstsq(best[:, :-1], best[:, -1], rcond=None)
+    return np.append(-weights, 1.0)[::-1]

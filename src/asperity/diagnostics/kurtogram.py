@@ -79,6 +79,7 @@ def kurtogram(signal: ArrayLike, rate: float, least_width: float = 0.0) -> Kurto
     values, rate = checked_signal(signal, rate)
     values = values / np.abs(values).max()
     lines = rfft(values)
+    whole = (values**2).sum() * values.size
     rows = []
     for count in SPLITS:
         width = 0.5 * rate / count
@@ -88,7 +89,7 @@ def kurtogram(signal: ArrayLike, rate: float, least_width: float = 0.0) -> Kurto
             first, last = (1 + (lines.size - 1) * each // count for each in (number, number + 1))
             part = ifft(lines[first:last])  # at the rate that the band needs
             power = np.abs(part) ** 2
-            share = 2.0 * power.sum() * power.size / ((values**2).sum() * values.size)
+            share = 2.0 * power.sum() * power.size / whole
             peaks = float((power**2).mean() / max(power.mean() ** 2, 1e-300) - 2.0)
             rows.append((float(count), number * width, (number + 1) * width, peaks, float(share)))
     return Kurtogram(*np.array(rows).T)

@@ -48,9 +48,8 @@ def _dominant(values: Samples, turn: float) -> float:
     """Frequency of a tone that has half of the mean square of a signal (n,), cycles a sample; 0 for none."""
     size = min(max(SEGMENT, int(TURNS * turn)), LONGEST, values.size)
     firsts = np.unique(np.linspace(0, values.size - size, SEGMENTS).astype(int))
-    frequency, density = psd(values[:size], 1.0)
-    for first in firsts[1:]:
-        density += psd(values[first : first + size], 1.0)[1]
+    frequency, densities = psd(np.array([values[first : first + size] for first in firsts]), 1.0)
+    density = densities.sum(axis=0)
     at = int(density[LINE:-LINE].argmax()) + LINE
     around = slice(at - LINE, at + LINE + 1)
     if density[around].sum() < DOMINANT * density.sum() or at <= LINE:

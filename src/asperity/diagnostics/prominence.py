@@ -117,9 +117,10 @@ class Prominence:
 
     def at(self, frequency: Array) -> Array:
         """Logarithms of ratios at frequencies of any shape, Hz; NaN beyond the spectrum."""
-        place = np.rint(frequency / self.step).astype(int)
-        inside = (place >= LOWEST_PLACE) & (place < self.log_ratio.size)
-        return np.where(inside, self.log_ratio[np.clip(place, 0, self.log_ratio.size - 1)], np.nan)
+        place = np.rint(frequency / self.step).astype(np.intp)
+        found = self.log_ratio.take(place, mode="clip")
+        found[(place < LOWEST_PLACE) | (place >= self.log_ratio.size)] = np.nan
+        return found
 
     def standardised(self, frequency: Array, highest: float) -> Array:
         """What `at` finds, by the median and deviation of all places up to a highest one."""
@@ -131,11 +132,13 @@ class Prominence:
 
         It is there where its first line has `least` times the background, and three of five in all.
         """
-        terms = self.at(fundamental[:, None] * np.arange(1, HARMONICS + 1))
+        begun = np.flatnonzero(self.at(fundamental) >= np.log(least))  # of noise, few of many
+        terms = self.at(fundamental[begun, None] * np.arange(1, HARMONICS + 1))
         held = np.isfinite(terms).sum(axis=1)
-        clear = terms >= np.log(least)
-        there = clear[:, 0] & (clear.sum(axis=1) >= np.clip(held, 1, 3))
-        return np.where(there, np.nansum(terms, axis=1) / np.maximum(held, 1), 0.0)
+        there = (terms >= np.log(least)).sum(axis=1) >= np.minimum(held, 3)
+        clearness = np.zeros(fundamental.size)
+        clearness[begun] = np.where(there, np.nansum(terms, axis=1) / held, 0.0)
+        return clearness
 
     def lines_of(self, fundamental: float) -> tuple[Indices, Array]:
         """Places and amplitudes (h,) of the highest lines within one resolution of the harmonics of a

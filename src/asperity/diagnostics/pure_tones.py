@@ -1,6 +1,8 @@
 """Tones: records that hold a few of them alone, beside what rounding leaves, and bands that few of them make,
 whose envelope is their beat."""
 
+from functools import lru_cache
+
 import numpy as np
 from scipy.fft import rfft
 
@@ -62,8 +64,14 @@ def beat(signal: Samples, rate: float, band: tuple[float, float]) -> bool:
 
 def _lines(values: Array) -> Array:
     """Squares of the lines of a signal (n,) by a window that leaves next to nothing beside them."""
-    window = hann_window(values.size, centred=True) ** SHARP
+    window = _window(values.size)
     return np.asarray(np.abs(rfft((values - values.mean()) * window)) ** 2 / (window**2).sum())
+
+
+@lru_cache(maxsize=1)
+def _window(size: int) -> Array:
+    """A window of so many samples: powers take longer than a transform."""
+    return np.asarray(hann_window(size, centred=True) ** SHARP)
 
 
 def _loudest(power: Array, most: int) -> tuple[list[int], float]:
