@@ -27,7 +27,7 @@ ROLLERS = {"rollers": 7, "roller_diameter": 8e-3, "roller_length": 8e-3, "cleara
 CYLINDRICAL = RollerBearing(pitch_diameter=40e-3, **ROLLERS)
 TAPERED = RollerBearing(pitch_diameter=40e-3 * np.cos(0.3), contact_angle=0.3, **ROLLERS)
 """Of both the cage turns 0.4 times as fast as the inner ring, so that all comes again after five turns."""
-TURNS, SPEED, STEP = 5, 200.0, 2e-6
+TURNS, SPEED, STEP = 5, 200.0, 3.125e-6
 LOADS = {CYLINDRICAL: (1000.0, 0.0), TAPERED: (1000.0, 600.0)}
 
 
@@ -48,7 +48,7 @@ def rolled(bearing, damping=60.0, **others):
     times = {
         "speed": SPEED,
         "duration": TURNS / SPEED,
-        "settling": 0.03,
+        "settling": 0.02,
         "time_step": STEP,
         "highest_frequency": 2e4,
     }
