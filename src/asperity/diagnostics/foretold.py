@@ -52,7 +52,8 @@ def _parts(values: Samples) -> Array:
 def _foreteller(parts: Array) -> Array:
     """Weights (ORDER + 1,) of samples, the last one first, by which what is foretold is taken off one."""
     rows = np.lib.stride_tricks.sliding_window_view(parts, ORDER + 1, axis=1)
-    missed = np.abs(np.linalg.qr(rows, mode="r")[:, -1, -1])  # what no sum of the other columns makes
-    best = rows[missed.argmin()]
+    triangles = np.asarray(np.linalg.qr(rows, mode="r"))
+    missed = np.abs(triangles[:, -1, -1])  # what no sum of the other columns makes
+    best = rows[np.argmin(missed)]
     weights, *_ = np.linalg.lstsq(best[:, :-1], best[:, -1], rcond=None)
     return np.append(-weights, 1.0)[::-1]
