@@ -25,8 +25,23 @@ def chromium():
         flags.append("--no-sandbox")
     with sync_playwright() as playwright:
         started = playwright.chromium.launch(executable_path=program, args=flags)
+        context = started.new_context()
+        context.add_init_script(RECORDER)
+        context.new_page()
         yield started
         started.close()
+
+
+def page_of(browser, width=1280, height=1000, scheme="light"):
+    """The page that all tests of a browser share; one of their own would start a process, for half a second.
+
+    It is as wide and high as asked for, on a screen, with nothing beneath the mouse.
+    """
+    page = browser.contexts[0].pages[0]
+    page.mouse.move(0, 0)
+    page.set_viewport_size({"width": width, "height": height})
+    page.emulate_media(media="null", color_scheme=scheme)
+    return page
 
 
 # --- what is drawn: colours, and texts with their places
@@ -121,16 +136,15 @@ def pixels(page, name, colour, panel=0):
 @contextmanager
 def pages_of(browser, address):
     """Opens a page at any width, with all drawn as before it is printed; nothing is loaded, nothing fails."""
-    pages, told = [], []
+    told, page = [], page_of(browser)
+    heard = {
+        "console": lambda message: told.append(message.text),
+        "pageerror": lambda error: told.append(str(error)),
+        "request": lambda request: None if request.url == address else told.append(request.url),
+    }
 
     def open_page(width=1280, scheme="light"):
-        page = browser.new_page(viewport={"width": width, "height": 1000}, color_scheme=scheme)
-        pages.append(page)
-        page.add_init_script(RECORDER)
-        page.on("console", lambda message: told.append(message.text))
-        page.on("pageerror", lambda error: told.append(str(error)))
-        page.on("request", lambda request: None if request.url == address else told.append(request.url))
-        page.goto(address)
+        page_of(browser, width, scheme=scheme).goto(address)
         if page.locator("figure.chart").count():
             page.locator("figure.chart.ready").last.wait_for(state="attached")
         page.evaluate("for (const name of ['beforeprint', 'afterprint']) dispatchEvent(new Event(name))")
@@ -139,9 +153,11 @@ def pages_of(browser, address):
         settled(page)
         return page
 
+    for event, hear in heard.items():
+        page.on(event, hear)
     yield open_page
-    for page in pages:
-        page.close()
+    for event, hear in heard.items():
+        page.remove_listener(event, hear)
     assert not told
 
 

@@ -28,7 +28,7 @@ from asperity.reporting.data import page_colours
 from asperity.reporting.figure import PageFigure
 from asperity.reporting.page import figures_page, whole_page
 from asperity.scenes.report import write_summary
-from browser import OVERLAPS, assert_accessible, assert_readable, pages_of, pixels
+from browser import OVERLAPS, assert_accessible, assert_readable, page_of, pages_of, pixels
 from small_cases import CASES
 
 AREAL = {"label": "areal", "law": "areal", "colour": BLUE, "width": 2.2}
@@ -263,13 +263,12 @@ def test_numbers_stand_where_nothing_is_drawn(browser, address, settings, script
 
 
 def test_figures_far_below_are_drawn_when_they_are_near(browser, address):
-    page = browser.new_page(viewport={"width": 390, "height": 500})
+    page = page_of(browser, 390, 500)
     page.goto(address)
     page.wait_for_selector("#run .uplot canvas")
     assert page.locator("#words .uplot").count() == 0
     page.locator("#words").scroll_into_view_if_needed()
     page.wait_for_selector("#words .uplot canvas")
-    page.close()
 
 
 # --- paper, and narrow screens
@@ -310,9 +309,9 @@ def test_a_summary_is_one_sheet_of_paper(browser, reports, real_runs, tmp_path, 
     file = reports[WIDEST] / "report.html"
     if way == "summary":
         file = write_summary(real_runs[WIDEST], tmp_path / "summary.html")
-    page = browser.new_page(viewport={"width": 1200, "height": 900})
-    page.add_init_script("window.print = () => { window.printed = true; }")
+    page = page_of(browser, 1200, 900)
     page.goto(file.as_uri())
+    page.evaluate("window.print = () => { window.printed = true; }")
     page.locator("figure.chart.ready").last.wait_for(state="attached")
     assert page.locator("#print-summary").count() == (way == "button")
     more = "it => { for (let n = 0; n < 25; n++) it.append(it.rows[0].cloneNode(true)); }"
@@ -330,7 +329,6 @@ def test_a_summary_is_one_sheet_of_paper(browser, reports, real_runs, tmp_path, 
     assert len(SHEETS.findall(page.pdf(prefer_css_page_size=True))) == 1
     zoom, height = page.evaluate("printed_size")
     assert zoom == 1.0 or height == pytest.approx(SHEET, rel=0.02)  # no smaller than the sheet asks for
-    page.close()
 
 
 # --- reports of all kinds

@@ -12,7 +12,7 @@ import numpy as np
 import psutil
 import pytest
 
-from browser import assert_accessible
+from browser import assert_accessible, page_of
 from small_cases import BALL
 
 pytest.importorskip("starlette", reason="the extra app is not installed")
@@ -30,6 +30,8 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the server is e
 SMALL = BALL | {"laws": ["shifted"], "duration": "10 ms"}
 PATIENCE = 60_000
 """Time that anything may take on a machine that does other things beside it, ms."""
+FORGET = "localStorage.clear(), sessionStorage.clear(), location.replace('about:blank')"
+"""What a tab keeps is for the test that opened it."""
 
 
 class Served:
@@ -71,17 +73,22 @@ def served(tmp_path_factory):
 @pytest.fixture
 def tab(browser, served):
     """A tab with the page, whose script has met no error."""
-    context = browser.new_context(viewport={"width": 1280, "height": 900}, accept_downloads=True)
-    context.set_default_timeout(PATIENCE)
-    opened = context.new_page()
-    wrong = []
-    opened.on("pageerror", lambda error: wrong.append(str(error)))
-    opened.on("console", lambda message: wrong.append(message.text) if "Policy" in message.text else None)
+    opened, wrong = page_of(browser, height=900), []
+    opened.context.set_default_timeout(PATIENCE)
+    heard = {
+        "pageerror": lambda error: wrong.append(str(error)),
+        "console": lambda message: wrong.append(message.text) if "Policy" in message.text else None,
+    }
+    for event, hear in heard.items():
+        opened.on(event, hear)
     opened.goto(served.address)
     opened.wait_for_selector("body[data-first-picture]")
     yield opened
+    opened.evaluate(FORGET)
+    opened.wait_for_url("about:blank")
+    for event, hear in heard.items():
+        opened.remove_listener(event, hear)
     assert wrong == []
-    context.close()
 
 
 def fill(tab, tmp_path, case):
@@ -217,6 +224,7 @@ def test_two_tabs_reload_cancel_and_go_on(tab, served, tmp_path):
     tab.click("button[aria-label='Go on: first']")
     becomes(tab, "first", "done")
     becomes(other, "first", "done")
+    other.close()
 
 
 def test_a_run_is_watched_heard_compared_and_taken_away(kept, tab, tmp_path):
@@ -300,6 +308,7 @@ def test_a_report_can_ask_nothing_of_the_server(kept, tab, served):
     opened.wait_for_function("() => document.title !== '?'")
     assert opened.title() == "refused"
     assert opened.evaluate("() => self.origin") == "null"
+    opened.close()
 
 
 @pytest.mark.parametrize(
