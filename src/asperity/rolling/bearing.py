@@ -12,7 +12,7 @@ from asperity.arguments import Array, ArrayLike, finite_array, positive, require
 from asperity.laws.linear import Linear
 from asperity.laws.spec import Law
 from asperity.progress import Progress
-from asperity.rolling.driver import RolledMechanism, rest_of, roll_mechanism
+from asperity.rolling.driver import RolledMechanism, rests_of, roll_mechanism
 from asperity.rolling.ledger import Ledger
 from asperity.rolling.mechanism import Mechanism, RollingContact, Side
 from asperity.rolling.soundness import STILL, without_rounding
@@ -496,7 +496,7 @@ class _Turning:
         trial = replace(mechanism, structures=loose, pressed=pressed)
         passing = self.bearing.balls * abs(self.bearing.kinematics(self.speed).cage) * self.time_step
         places = np.linspace(0.0, min(1.0 / passing, self.total), INSTANTS, endpoint=False).astype(int)
-        rest = np.mean([rest_of(trial, int(step), load)[: len(held)] for step in places], axis=0)
+        rest = rests_of(trial, places.tolist(), load)[:, : len(held)].mean(axis=0)
         pressed[INNER] = pressed[INNER] + (TURN * inner.frequencies) ** 2 * rest
         return replace(mechanism, pressed=pressed)
 

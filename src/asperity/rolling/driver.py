@@ -1,6 +1,7 @@
 """A mechanism carried on in time, from rest, and what is kept of it."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -163,13 +164,20 @@ def roll_mechanism(
     return RolledMechanism(**recorded(stepper))
 
 
-def rest_of(mechanism: Mechanism, step: int, load: float) -> Array:
-    """Coordinates of all modes (s,) of a mechanism at rest, as it stands at a step; `load` as above, N."""
+def rests_of(mechanism: Mechanism, steps: Sequence[int], load: float) -> Array:
+    """Coordinates of all modes (k, s) of a mechanism at rest, as it stands at each of some steps.
+
+    It has no rail; the `load` as above, N.
+    """
     course = Course(mechanism, 1.0, 0)
-    at = range(step, step + 1)
-    ground = ground_of(course, np.zeros((0, mechanism.first_modes[-1])), at)
+    ground = ground_of(course, np.zeros((0, mechanism.first_modes[-1])), range(1))
     loads = np.full(course.contacts, load)
     system = assembly.system_of(ground, course.bodies, loads, 1.0, mechanism.constant)
-    laws = laid_together(mechanism.contacts, at)
-    rest = standing(ground, course.bodies, system, laws)
-    return rest.motion.displacement[: mechanism.first_modes[-1]]
+    found = []
+    for step in steps:
+        at = range(step, step + 1)
+        shapes, rates = course.shapes_at(at)
+        here = replace(ground, shapes=shapes[0], rates=rates[0])
+        rest = standing(here, course.bodies, system, laid_together(mechanism.contacts, at))
+        found.append(rest.motion.displacement[: mechanism.first_modes[-1]])
+    return np.array(found)

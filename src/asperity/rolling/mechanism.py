@@ -71,7 +71,7 @@ class Mechanism:
             require(known, "structure of a contact", "one that is not there", f"0 to {last}")
         rails = [isinstance(each, RailBetween) for each in self.structures]
         require(sum(rails) <= 1, "structures", count_of(sum(rails), "rail"), "one at most")
-        for contact in self.contacts:
+        for contact in self.contacts if any(rails) else ():
             signs = [side.sign for side in contact.sides]
             alone = not any(rails[side.structure] for side in contact.sides) or signs == [1.0]
             allowed = "the rail alone, with a sign of 1"

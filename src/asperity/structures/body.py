@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -121,7 +122,7 @@ class Body:
         """Forces of the contacts at rest (c,), N, on a rigid plane; of several answers the most even."""
         return self._statics[1]
 
-    @property
+    @cached_property
     def _statics(self) -> tuple[Array, Array]:
         """Displacements y (d,) and forces (c,) with A y = 0 and Aᵀ F − K y = p, of least squares."""
         c, d = self.contacts.shape
