@@ -13,7 +13,7 @@ from asperity.reduction.stiffness import ForceTable
 from asperity.running import prepare_case
 from asperity.scenarios import laws, reducing, scanned_states
 from asperity.scenarios.preparing import scans_of
-from asperity.scenarios.scanned_states import states_around
+from asperity.scenarios.scanned_states import states_apart, states_around
 from asperity.scenes.compute import compute
 from asperity.spectra import band_levels, psd
 from small_cases import changed
@@ -54,6 +54,34 @@ def test_between_the_approaches_visited_the_force_is_that_of_all_states(visited)
         assert off.std() <= 0.01 * exact.std()  # 0.1 dB
 
 
+def test_every_other_state_is_left_out_where_those_beside_it_tell_its_force():
+    approaches = np.linspace(0.5e-6, 5e-6, 11)
+    touches = np.array([[0.0], [0.2e-6], [0.4e-6]])
+    straight = 1e9 * (approaches - touches) ** 1.5
+    assert states_apart(approaches, straight) == [0, 2, 4, 6, 8, 10]
+    assert states_apart(approaches[1:], straight[:, 1:]) == [0, 1, 3, 5, 7, 9]  # the highest counts
+    bent = straight * (1.0 + np.maximum(1.0 - approaches / 2e-6, 0.0) ** 2)
+    assert states_apart(approaches, bent) == [0, 1, 2, 3, 4, 5, 6, 8, 10]  # slopes reach one state farther
+    one = np.stack([straight[0], straight[0], bent[0]])  # one sample is enough
+    assert states_apart(approaches, one)[:3] == [0, 1, 2]
+    apart = 1e9 * np.maximum(approaches - 1.2e-6, 0.0) ** 1.5  # nothing is known before it touches
+    assert states_apart(approaches, apart[None])[:3] == [0, 1, 2]
+    assert states_apart(approaches[:4], straight[:, :4]) == [0, 1, 2, 3]
+
+
+@pytest.mark.filterwarnings("ignore::asperity.errors.TruncatedContactWarning")  # of the filters, seldom
+def test_a_wheel_over_every_other_state_has_the_levels_of_one_over_all(own_cache, monkeypatch):
+    textures = {"surface": TEXTURES["wheel-on-rail"], "contact": FINE["wheel-on-rail"]}
+    case = changed("wheel-on-rail", laws=["table"], duration="0.1 s", **textures)
+    few = compute(prepare_case(case), lambda *_: None)
+    assert few.shape.cells != few.cells_of_heights == "covered"
+    monkeypatch.setattr(laws, "states_apart", lambda approaches, _: list(range(len(approaches))))
+    every = compute(prepare_case(case), lambda *_: None)
+    assert len(few.to_look_up[few.scanned]) < len(every.to_look_up[every.scanned])
+    off = few.force_levels[0] - every.force_levels[0]
+    assert 0.0 < np.sqrt(np.mean(off**2)) < 0.03
+
+
 def rolled(monkeypatch, case, expected):
     monkeypatch.setattr(scanned_states, "EXPECTED", expected)
     computed = compute(prepare_case(case), lambda *_: None)
@@ -69,8 +97,8 @@ def test_a_motion_that_leaves_what_was_scanned_is_rolled_anew_over_more(own_cach
         laws, "scan_forces", lambda job, **how: asked.append(job.approaches[0]) or scan_forces(job, **how)
     )
     few, states = rolled(monkeypatch, case, (0.98, 1.02))
-    assert sorted(asked) == few.reduction.approaches[states].tolist()  # each once
-    assert whole == slice(0, len(every.reduction.approaches))
+    assert sorted(asked) == few.reduction.approaches[few.to_look_up[states]].tolist()  # each once
+    assert whole == slice(0, len(every.to_look_up))
     assert states.start > 0 if name == "held down" else states.start == 0
     assert few.scan.forces.shape[0] == states.stop - states.start < whole.stop
     assert few.scan.counts.solved < every.scan.counts.solved

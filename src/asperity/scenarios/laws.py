@@ -26,7 +26,7 @@ from asperity.reduction.texture import StateTexture, areal_texture
 from asperity.scenarios import reducing
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.scanned_positions import table_stride
-from asperity.scenarios.scanned_states import states_around, states_expected
+from asperity.scenarios.scanned_states import states_apart, states_around, states_expected
 from asperity.scenarios.scene import PreparedCase
 from asperity.scenarios.textures import Textures, textures_under
 from asperity.store import Store
@@ -40,7 +40,7 @@ class ReducedCase(PreparedCase):
     # (rows,), height of the plane that the nominal patch feels along the path, m, peaks positive
     planes: Array | None
     progress: Progress
-    # states at which the path is scanned; None: those that a motion is expected to visit
+    # at which the path is scanned, of those to look up; None: those that a motion is expected to visit
     states: slice | None = None
     # scans of the path by their states, which those have in common that are scanned for other motions
     scans: dict[int, ScannedForces] = field(default_factory=dict)
@@ -129,16 +129,26 @@ class ReducedCase(PreparedCase):
         start = self.textures.start
         return self._over_defects(areal_texture(path, spacing, approaches[loaded], within, start))
 
+    @cached_property
+    def to_look_up(self) -> list[int]:
+        """States, by their numbers, at which the path may be scanned: of covered cells fewer than all."""
+        ensemble = self._reduced.ensemble
+        if self.case.contact.approaches is not None or self._seen[0].cells == "whole":
+            return list(range(len(ensemble.approaches)))
+        return states_apart(ensemble.approaches, ensemble.forces)
+
     @property
     def scanned(self) -> slice:
-        """States at which the path is scanned."""
+        """States at which the path is scanned, of those to look up."""
         ensemble = self._reduced.ensemble
-        return self.states or states_expected(ensemble.approaches, ensemble.mean_force, self.scene.loads)
+        which = self.to_look_up
+        forces = ensemble.mean_force[which]
+        return self.states or states_expected(ensemble.approaches[which], forces, self.scene.loads)
 
     def wider(self, visited: tuple[float, float] | None) -> Self | None:
         """One whose path is scanned for a motion between two approaches, m, too; None if this one's is."""
         scanned = self.scanned
-        approaches = self._reduced.approaches
+        approaches = self._reduced.approaches[self.to_look_up]
         needed = slice(0, len(approaches)) if visited is None else states_around(approaches, visited)
         both = slice(min(scanned.start, needed.start), max(scanned.stop, needed.stop))
         return None if both == scanned else replace(self, states=both)
@@ -146,7 +156,7 @@ class ReducedCase(PreparedCase):
     @cached_property
     def path_scan(self) -> ScannedForces:
         """The scan of the path, state after state: motions that visit others share them."""
-        states = range(self.scanned.start, self.scanned.stop)
+        states = self.to_look_up[self.scanned]
         unknown = [state for state in states if state not in self.scans]
         for which, state in enumerate(unknown):
             self.scans[state] = self._scan_of(state, partial(self._tell, which, len(unknown)))
@@ -197,7 +207,7 @@ class ReducedCase(PreparedCase):
             assert self._reduced.touches is not None
             touches = self._reduced.touches[rows]
         start = self.textures.start + (rows.start + body.shape[0] // 2) * dx
-        approaches = self._reduced.approaches[self.scanned]
+        approaches = self._reduced.approaches[self.to_look_up[self.scanned]]
         return ForceTable(self.path_scan.forces, approaches, start, rows.step * dx, touches)
 
 

@@ -35,7 +35,7 @@ from asperity.scenarios.geometry import CLEAR, Geometry, geometry_of, window_cel
 from asperity.scenarios.problems import by_key, problems, refuse
 from asperity.scenarios.rim_cells import with_rims
 from asperity.scenarios.scanned_positions import table_stride
-from asperity.scenarios.scanned_states import states_expected
+from asperity.scenarios.scanned_states import states_apart, states_expected
 from asperity.scenarios.scene import PreparedCase, scene_of
 from asperity.scenarios.textures import Textures, textures_of, warn_of_textures
 from asperity.store import MOST_HELD, Store
@@ -158,25 +158,27 @@ def scans_of(prepared: PreparedCase, states: Array) -> dict[str, list[ScanJob]]:
     textures = prepared.textures
 
     def scans(
-        strips: Sequence[Strip], on: Geometry, of: slice, stride: int, accuracy: float, anchor: int = 0
+        strips: Sequence[Strip], on: Geometry, at: Array, stride: int, accuracy: float, anchor: int = 0
     ) -> list[ScanJob]:
         half_space = on.half_space(None)
         rtol = rtol_for(accuracy * case.numerics.force_accuracy)
-        at = states[of]
         return [ScanJob(half_space, strip, on.body, at, stride, rtol, anchor=anchor) for strip in strips]
 
     found = {}
     if strips := [strip for strip in textures.strips if strip.heights.any()]:
         every = 1 if Need.FILTER in needs_of(case.laws) else reducing.SHOWN
-        shown = slice((len(states) - 1) % every, None, every)
+        shown = states[(len(states) - 1) % every :: every]
         found["filters"] = scans(strips, shape, shown, reducing.filter_stride(shape), FILTER_SHARE)
     if Need.SCAN in needs_of(case.laws) and textures.path is not None:
-        visited = slice(None)
-        if case.contact.approaches is None:
-            visited = states_expected(states, reducing.nominal_forces(shape), prepared.scene.loads)
         on, over = prepared.of_heights
         assert over.path is not None
-        found["path"] = scans([over.path], on, visited, table_stride(prepared), 1.0, textures.before)
+        visited = list(range(len(states)))
+        if case.contact.approaches is None:
+            forces = reducing.nominal_forces(shape)
+            if on.cells == "covered":
+                visited = states_apart(forces ** (2.0 / 3.0), forces[None])
+            visited = visited[states_expected(states[visited], forces[visited], prepared.scene.loads)]
+        found["path"] = scans([over.path], on, states[visited], table_stride(prepared), 1.0, textures.before)
     return found
 
 

@@ -8,11 +8,34 @@ import numpy as np
 
 from asperity.arguments import Array
 from asperity.errors import ComputationError, PhysicsWarning
+from asperity.kernels.curves import shape_preserving
 
 EXPECTED = (0.75, 1.25)
 """Forces between which a motion is expected to stay, over the static loads, until it is known."""
 FEWEST = 3
 """States, at least, through which forces are interpolated: F^(2/3) is nearly straight, and a little bent."""
+
+CURVED = 1e-3
+"""Relative error of the forces of samples, rms, up to which a state is left to those beside it."""
+
+
+def states_apart(approaches: Array, forces: Array) -> list[int]:
+    """Which of the states (k,), m, are enough to interpolate the forces (N, k), N, of some samples in all.
+
+    Every other from the highest on, and those between where F^(2/3) is bent: levels on a path are within
+    0.03 dB of those through all states.
+    """
+    count = len(approaches)
+    kept = np.arange((count - 1) % 2, count, 2)
+    if len(kept) < FEWEST:
+        return list(range(count))
+    between = kept[:-1] + 1
+    root = np.cbrt(forces[:, kept]) ** 2
+    found = shape_preserving(approaches[kept], root, approaches[between]) ** 1.5
+    known = forces[:, between]
+    off = np.sqrt(np.mean((found - known) ** 2, axis=0))
+    straight = (known > 0.0).all(axis=0) & (off <= CURVED * known.mean(axis=0))
+    return sorted({*range(count)} - {*between[straight].tolist()})
 
 
 def states_expected(approaches: Array, forces: Array, loads: Array) -> slice:
