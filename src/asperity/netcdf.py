@@ -96,38 +96,44 @@ def _describe(of: h5py.Group | h5py.Dataset, attributes: Mapping[Any, Any]) -> N
         of.attrs[str(name)] = value if isinstance(value, str) else np.atleast_1d(value)
 
 
-def variables_in(group: h5py.Group) -> dict[str, h5py.Dataset]:
-    """The variables of a group by name: all of its datasets but dimensions alone."""
+def held_in(group: h5py.Group) -> tuple[dict[str, h5py.Dataset], list[h5py.Group]]:
+    """The variables of a group by name, all of its datasets but dimensions alone, and its groups."""
     import h5py
 
-    held = {name: each for name, each in group.items() if isinstance(each, h5py.Dataset)}
-    return {name: each for name, each in held.items() if not _is_dimension_alone(each)}
-
-
-def groups_in(group: h5py.Group) -> list[h5py.Group]:
-    """The groups of a group."""
-    import h5py
-
-    return [each for each in group.values() if isinstance(each, h5py.Group)]
+    held = dict(group.items())
+    datasets = {name: each for name, each in held.items() if isinstance(each, h5py.Dataset)}
+    variables = {name: each for name, each in datasets.items() if not _is_dimension_alone(each)}
+    return variables, [each for each in held.values() if isinstance(each, h5py.Group)]
 
 
 def _is_dimension_alone(dataset: h5py.Dataset) -> bool:
-    return bytes(dataset.attrs.get("NAME", b"")).startswith(NO_VARIABLE.encode())
+    import h5py
+
+    return dataset.is_scale and h5py.h5ds.get_scale_name(dataset.id).startswith(NO_VARIABLE.encode())
 
 
 def dimensions_of(variable: h5py.Dataset) -> tuple[str, ...]:
     """Names of the dimensions of a variable: those of the scales attached to its axes, or its own."""
-    if not variable.ndim:
-        return ()
-    if variable.attrs.get("CLASS") == b"DIMENSION_SCALE" and variable.ndim == 1:
-        return (_name_of(variable),)
-    if not all(variable.dims):
-        raise ValueError(f"a variable without dimensions, {_name_of(variable)}")
-    return tuple(_name_of(axis[-1]) for axis in variable.dims)
+    if variable.ndim == 1 and variable.is_scale:
+        return (_name_of(variable.id),)
+    return tuple(_scale_of(variable, axis) for axis in range(variable.ndim))
 
 
-def _name_of(dataset: h5py.Dataset) -> str:
-    return str(dataset.name).rpartition("/")[2]
+def _scale_of(variable: h5py.Dataset, axis: int) -> str:
+    """Name of the last scale of an axis: each question to HDF5 reads the scales of all axes."""
+    import h5py
+
+    scales: list[h5py.h5d.DatasetID] = []
+    h5py.h5ds.iterate(variable.id, axis, scales.append, 0)
+    if not scales:
+        raise ValueError(f"a variable without dimensions, {_name_of(variable.id)}")
+    return _name_of(scales[-1])
+
+
+def _name_of(dataset: h5py.h5d.DatasetID) -> str:
+    import h5py
+
+    return str(h5py.h5i.get_name(dataset).decode().rpartition("/")[2])
 
 
 def attributes_in(of: h5py.Group | h5py.Dataset) -> dict[str, Any]:
@@ -135,9 +141,10 @@ def attributes_in(of: h5py.Group | h5py.Dataset) -> dict[str, Any]:
     import h5py
 
     found = {}
-    for name, value in of.attrs.items():
+    for name in of.attrs:
         if name in LAYOUT:
             continue
+        value = of.attrs[name]
         if isinstance(value, h5py.Empty):
             value = "" if value.dtype.kind in "SO" else np.zeros(0, value.dtype)
         elif isinstance(value, bytes):

@@ -15,9 +15,8 @@ from asperity.hdf5 import MOST_UNPACKED, SIGNATURE, most_unpacked, opened_hdf5, 
 from asperity.netcdf import (
     attributes_in,
     dimensions_of,
-    groups_in,
+    held_in,
     values_in,
-    variables_in,
     write_netcdf,
 )
 from asperity.sandbox import Answer, sandboxed
@@ -159,7 +158,7 @@ def groups_of_netcdf(path: str, whole: bool) -> Answer:
 
     def take(group: Any) -> None:
         nonlocal left
-        variables = variables_in(group) if whole else {}
+        variables, inner = held_in(group) if whole else ({}, [])
         for each in variables.values():
             left -= size_unpacked(each.shape, each.dtype.itemsize)
             require_left()
@@ -170,8 +169,8 @@ def groups_of_netcdf(path: str, whole: bool) -> Answer:
             arrays.append(values)
         told = [(name, dimensions_of(each), attributes_in(each)) for name, each in variables.items()]
         groups.append((group.name, attributes_in(group), told))
-        for inner in groups_in(group) if whole else ():
-            take(inner)
+        for each in inner:
+            take(each)
 
     def require_left() -> None:
         if left < 0:
