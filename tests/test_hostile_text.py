@@ -140,9 +140,9 @@ def test_headers_are_read_across_white_space():
 
 def test_what_is_large_and_right_is_read(tmp_path):
     assert study(f"seed = {list(range(9999))}", tmp_path).shape == (9999,)
-    with pytest.warns(match="200000 points"):
-        line = heights("z (um)\n" + "1\n\n2\n" * 200_000, tmp_path)
-    assert line.heights.shape == (600_000,)
+    with pytest.warns(match="100000 points"):
+        line = heights("z (um)\n" + "1\n\n2\n" * 100_000, tmp_path)
+    assert line.heights.shape == (300_000,)
     np.testing.assert_array_equal(np.isnan(line.heights[:6]), [False, True, False] * 2)
     assert heights("line_1\n2024_01_15\n____;____\n3;4\n5;6\n", tmp_path).heights.size == 2
 
@@ -299,6 +299,7 @@ def test_what_is_not_plain_is_left_to_those_who_say_what_it_is(line):
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
 def test_blocks_hold_whole_lines_whatever_ends_them(monkeypatch, end):
     monkeypatch.setattr(text_files, "_BLOCK", 5)
+    monkeypatch.setattr(text_files, "_FIRST_BLOCK", 3)
     content = end.join(["a", "", "longer than a block", "b", end])
     assert [line for lines in blocks_of_lines(content) for line in lines] == list(io.StringIO(content, None))
 

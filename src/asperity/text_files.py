@@ -38,6 +38,7 @@ BACKSLASH = (
 LATIN_SHARE = 0.5
 """Least share of Latin characters in UTF-16 that bears no mark."""
 _BLOCK = 1 << 16
+_FIRST_BLOCK = 1 << 10
 """Characters of a text that are taken at a time."""
 _PLAIN = re.compile(r"[\d.,;+\-eE \t\n]*+", re.ASCII)
 """Numbers and what stands between them."""
@@ -136,10 +137,14 @@ def lines_in(content: str) -> Iterator[str]:
 
 
 def blocks_of_lines(content: str) -> Iterator[list[str]]:
-    """Lines of a text, in lists of some ten kilobytes, at ends of lines of any system."""
+    """Lines of a text, in lists of some ten kilobytes, the first of one, at ends of lines of any system.
+
+    The first may hold a heading, for which all lines beside it are read one by one.
+    """
     start = 0
     while start < len(content):
-        ends = (content.find(mark, start + _BLOCK) + 1 for mark in "\n\r")
+        after = start + (_BLOCK if start else _FIRST_BLOCK)
+        ends = (content.find(mark, after) + 1 for mark in "\n\r")
         end = next((end for end in ends if end), len(content))
         yield list(io.StringIO(content[start:end], newline=None))
         start = end
