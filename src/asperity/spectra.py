@@ -7,6 +7,7 @@ in wavelength are those in wavenumber read backwards, since both have their cent
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
@@ -218,42 +219,49 @@ def values_seen(signal: Array, step: float, centres: Array) -> Array:
     return np.minimum(found, 1.0)
 
 
-def chance_and_start(
-    transfer: Callable[[Array], Complex], centres: Array, settled: float, record: float
-) -> tuple[Array, Array]:
-    """Independent values that bands hold (b,), and the share of their mean square that is not built up (b,).
+@dataclass(frozen=True, eq=False)
+class RingingBand:
+    """How a band of a force rings after a blow, with all places of a record together."""
 
-    Of the force per height (p, f) at places and frequencies, of centres (b,), Hz, and of a record, s, that
-    begins `settled`, s, after vibration did. The mean square of a force that begins at zero grows as the
-    integral of ``|g|²``: the share is what is still to come, as a mean over the record. The mean square over
-    a record T of a force with the correlation R(τ) has a relative variance of
-    ``∫|R|²(1 − |τ|/T) dτ/(T R(0)²)``; its inverse is the number of independent values, bandwidth
-    times T for noise that is white in the band.
-    """
-    numbers, shares = np.empty((2, len(centres)))
-    for band, centre in enumerate(centres):
-        low = centre / HALF_BAND
-        width = centre * (HALF_BAND - 1.0 / HALF_BAND)
-        force, pulse = _pulse(transfer, low, width)
-        lines = pulse.size
-        after = np.arange(lines) / width
-        coming = np.where(np.arange(lines) < lines // 2, np.clip((after - settled) / record, 0.0, 1.0), 0.0)
-        shares[band] = coming @ pulse / pulse.sum()
-        power = np.abs(force) ** 2
-        lag = np.minimum(after, lines / width - after)
-        alike = np.mean(np.abs(np.fft.ifft(power)) ** 2, axis=0) @ np.maximum(1.0 - lag / record, 0.0)
-        numbers[band] = max(np.mean(power) ** 2 * width * record / alike, 1.0)
-    return numbers, shares
+    width: float  # of the band, Hz
+    energy: Array  # of its pulse, (n,), at times k over the width
+    likeness: Array  # |R|²/R(0)² of its correlation at the same lags, the second half of which are negative
+
+    def not_built_up(self, settled: float, record: float) -> float:
+        """Share of its mean square that is not there in a record, s, `settled`, s, after vibration began.
+
+        The mean square of a force that begins at zero grows as the integral of ``|g|²``: the share is what
+        is still to come, as a mean over the record.
+        """
+        half = self.energy.size // 2
+        coming = np.clip((np.arange(half) / self.width - settled) / record, 0.0, 1.0)
+        return float(coming @ self.energy[:half] / self.energy.sum())
+
+    def values(self, record: float) -> float:
+        """Number of independent values that a record T, s, of it holds.
+
+        The mean square of a force with the correlation R(τ) has a relative variance of
+        ``∫|R|²(1 − |τ|/T) dτ/(T R(0)²)``; its inverse is that number, bandwidth times T for noise that is
+        white in the band.
+        """
+        after = np.arange(self.likeness.size)
+        lag = np.minimum(after, self.likeness.size - after) / self.width
+        alike = self.likeness @ np.maximum(1.0 - lag / record, 0.0)
+        return max(self.width * record / float(alike), 1.0)
 
 
-def _pulse(transfer: Callable[[Array], Complex], low: float, width: float) -> tuple[Complex, Array]:
-    """Force per height (p, f) at frequencies of a band, Hz, and the energy of its pulse over time (f,)."""
+def ringing_band(transfer: Callable[[Array], Complex], centre: float) -> RingingBand:
+    """Find how a band of a centre, Hz, rings of the force per height (p, f) at places and frequencies, Hz."""
+    low = centre / HALF_BAND
+    width = centre * (HALF_BAND - 1.0 / HALF_BAND)
     for lines in LINES:
         force = transfer(low + width * (np.arange(lines) + 0.5) / lines)
-        pulse = np.sum(np.abs(np.fft.ifft(force)) ** 2, axis=0)
-        if pulse[lines // 4 : 3 * lines // 4].sum() < RUNG_OUT * pulse.sum():
+        energy = np.sum(np.abs(np.fft.ifft(force)) ** 2, axis=0)
+        if energy[lines // 4 : 3 * lines // 4].sum() < RUNG_OUT * energy.sum():
             break
-    return force, pulse
+    power = np.abs(force) ** 2
+    likeness = np.mean(np.abs(np.fft.ifft(power)) ** 2, axis=0) / np.mean(power) ** 2
+    return RingingBand(width, energy, likeness)
 
 
 def third_octave_numbers(centres: ArrayLike) -> Array:

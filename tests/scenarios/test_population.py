@@ -10,7 +10,7 @@ from scipy.stats import gamma
 
 from asperity.reporting.tables import population_table
 from asperity.scenes.population import _is_drawn, along_over_across, levels_along, told_apart
-from asperity.spectra import band_product, chance_and_start, level_deviation, values_seen
+from asperity.spectra import band_product, level_deviation, ringing_band, values_seen
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.synthesis import self_affine
 from small_cases import COARSE
@@ -35,9 +35,7 @@ def test_a_resonance_forgets_its_start_as_slowly_as_it_rings(damping, centre):
     The last one rings longer than few frequencies in a band resolve.
     """
     rate = 2.0 * damping * 2.0 * np.pi * centre
-    _, (share,) = chance_and_start(
-        lambda f: resonance(f, damping, centre), np.array([centre]), SETTLED, RECORD
-    )
+    share = ringing_band(lambda f: resonance(f, damping, centre), centre).not_built_up(SETTLED, RECORD)
     expected = np.exp(-rate * SETTLED) * (1.0 - np.exp(-rate * RECORD)) / (rate * RECORD)
     assert share == pytest.approx(expected, rel=0.02, abs=0.01)
 
@@ -46,22 +44,23 @@ def test_a_resonance_forgets_its_start_as_slowly_as_it_rings(damping, centre):
 def test_a_band_holds_as_many_values_as_its_resonance_forgets(damping):
     """Of the correlation exp(−λ|τ|) of its square; the band itself would hold 18."""
     along = 2.0 * damping * 2.0 * np.pi * CENTRE * RECORD
-    (values,), _ = chance_and_start(lambda f: resonance(f, damping), np.array([CENTRE]), SETTLED, RECORD)
+    values = ringing_band(lambda f: resonance(f, damping), CENTRE).values(RECORD)
     expected = 0.5 * along / (1.0 - (1.0 - np.exp(-along)) / along)
     assert values == pytest.approx(max(expected, 1.0), rel=0.03)
 
 
 def test_white_noise_holds_bandwidth_times_time():
     centres = 10.0 ** np.arange(2.0, 3.6, 0.1)
-    values, share = chance_and_start(lambda f: np.ones((3, f.size)), centres, SETTLED, RECORD)
+    found = [ringing_band(lambda f: np.ones((3, f.size)), centre) for centre in centres]
+    values = [each.values(RECORD) for each in found]
     np.testing.assert_allclose(values, band_product(centres, RECORD), rtol=0.1)
-    assert share.max() < 0.02
+    assert max(each.not_built_up(SETTLED, RECORD) for each in found) < 0.02
 
 
 def test_places_that_ring_louder_count_more():
     """Half of a record that is silent leaves half of the values."""
-    (silent,), (even,) = (
-        chance_and_start(lambda f, p=p: np.outer(p, np.ones(f.size)), np.array([1e3]), SETTLED, RECORD)[0]
+    silent, even = (
+        ringing_band(lambda f, p=p: np.outer(p, np.ones(f.size)), 1e3).values(RECORD)
         for p in ([1.0, 0.0], [1.0, 1.0])
     )
     assert silent == pytest.approx(0.5 * even, rel=1e-9)

@@ -8,7 +8,7 @@ import pytest
 import asperity
 from asperity.case.cases import as_case, parse_case, template
 from asperity.running import prepare_case
-from asperity.scenes.start_of_record import chance_along, start_foreseen
+from asperity.scenes.start_of_record import ringing_along, start_foreseen
 from command_line import call
 from small_cases import COARSE
 
@@ -53,7 +53,8 @@ def test_all_places_of_a_record_count_alike():
     band = np.array([200.0, 400.0, 800.0])
 
     def not_built_up(*ends):
-        return chance_along(prepared.scene, 2e7, ends, band, 0.05, 0.12)[1]
+        found = ringing_along(prepared.scene, 2e7, ends, band)
+        return [each.not_built_up(0.05, 0.12) for each in found]
 
     np.testing.assert_allclose(not_built_up(start, end), not_built_up(end, start), rtol=1e-9)
     assert not np.allclose(not_built_up(start, start), not_built_up(end, end), rtol=1e-3)

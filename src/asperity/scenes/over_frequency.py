@@ -9,7 +9,7 @@ from asperity import spectra as bands
 from asperity.arguments import Array
 from asperity.scenes import schema
 from asperity.scenes.compute import Computed
-from asperity.scenes.start_of_record import chance_along
+from asperity.scenes.start_of_record import ringing_along
 from asperity.scenes.validity import difference_to
 from asperity.schema import Values, spectra
 
@@ -63,8 +63,9 @@ def held_values(computed: Computed) -> tuple[Array, Array, Array]:
     record = float(run.time[-1])
     product = bands.band_product(band, time)
     ends = run.positions[0, [0, -1]]
-    of = (computed.scene, computed.stiffness, ends, band)
-    held, start = chance_along(*of, case.settled_time, record)
+    ringing = ringing_along(computed.scene, computed.stiffness, ends, band)
+    start = np.array([each.not_built_up(case.settled_time, record) for each in ringing])
+    held = np.array([each.values(record) for each in ringing])
     return product, start, np.minimum(product * seen, held * time / record)
 
 

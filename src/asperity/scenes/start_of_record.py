@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from asperity import spectra as bands
-from asperity.arguments import Array, ArrayLike
+from asperity.arguments import Array, ArrayLike, Complex
 from asperity.errors import Finding, Grade
 from asperity.scenarios.laws import working_point
 from asperity.scenarios.scene import PreparedCase, Scene, force_transfer
@@ -17,22 +17,18 @@ PLACES = 8
 """Places along the record at which the linear contact is looked at."""
 
 
-def chance_along(
-    scene: Scene, stiffness: float, ends: ArrayLike, band: Array, settled: float, record: float
-) -> tuple[Array, Array]:
-    """Independent values that bands hold (b,), and the share of their mean square that is not built up (b,).
+def ringing_along(scene: Scene, stiffness: float, ends: ArrayLike, band: Array) -> list[bands.RingingBand]:
+    """How bands (b,), Hz, ring of the force of the first contact per height, at places along a record.
 
-    Of the force of the first contact per height, linear with a stiffness, N/m, at places between the ends of
-    a record, m: as `asperity.spectra.chance_and_start`.
+    The force is linear with a stiffness, N/m; the places lie between the ends of the record, m.
     """
     begin, end = np.asarray(ends)
     places = begin + (end - begin) * (np.arange(PLACES) + 0.5) / PLACES
-    return bands.chance_and_start(
-        lambda frequency: force_transfer(frequency, scene.first, scene, stiffness, places),
-        band,
-        settled,
-        record,
-    )
+
+    def transfer(frequency: Array) -> Complex:
+        return force_transfer(frequency, scene.first, scene, stiffness, places)
+
+    return [bands.ringing_band(transfer, float(centre)) for centre in band]
 
 
 def low_levels(band: Array, share: Array) -> tuple[str, str] | None:
@@ -53,14 +49,17 @@ def start_foreseen(prepared: PreparedCase) -> Iterator[Finding]:
     stiffness = working_point(case.contact, prepared.shape, None)[1]
     ends = (case.record_start, case.record_start + case.rolled_in(record))
     band = bands.third_octave_bands(lowest_recorded(case, record), case.numerics.highest_frequency)[0]
-    of = (prepared.scene, stiffness, ends, band)
-    settled = case.settled_time
-    told = low_levels(band, chance_along(*of, settled, record)[1])
+    ringing = ringing_along(prepared.scene, stiffness, ends, band)
+
+    def low_after(settled: float) -> tuple[str, str] | None:
+        return low_levels(band, np.array([each.not_built_up(settled, record) for each in ringing]))
+
+    told = low_after(case.settled_time)
     if told is None:
         return
     where, low = told
-    longer = max(settled, 0.01)
-    while low_levels(band, chance_along(*of, longer, record)[1]) is not None:
+    longer = max(case.settled_time, 0.01)
+    while low_after(longer) is not None:
         longer = float(f"{1.25 * longer:.2g}")
     yield Finding(
         "levels of bands that the start of the record makes low",
