@@ -212,7 +212,7 @@ def test_lines_that_do_not_stand_out_are_not_denied():
     """What was asked of the envelope is told: a verdict of the signal may be sure of a part all the same."""
     pit = {"on": "inner", "length": "0.05 mm", "depth": "1 nm"}
     changes = {"radial": "0 N", "axial": "100 N", "fault": pit, "duration": "60 ms"}
-    told = asperity.run(BEARING | changes).attrs["verdict"]
+    told = asperity.run(BEARING | changes, brief=True).attrs["verdict"]
     words = "No part has a line 4 times above what is around it in the envelope, and two such multiples. "
     assert words in told
     assert "lines of" not in told

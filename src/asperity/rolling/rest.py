@@ -26,8 +26,8 @@ LARGEST_MOVE = 1.0  # m
 ITERATIONS = 200
 TOLERANCE, STEPPED_TOLERANCE = 1e-9, 1e-5
 """Of the forces at rest, relative to the loads; contacts of stepped laws are themselves solved to one."""
-PRELOAD = 2.0
-"""Kernel lengths for which the load has rolled before the path."""
+PRELOAD = 2
+"""Kernel lengths for which the load has rolled before the path: of what is scattered one is all there is."""
 LOADINGS = 20
 """Times, at most, that a rail is loaded anew for bodies that share their load over several contacts."""
 ON_SUPPORT = 1e-9
@@ -261,7 +261,7 @@ def standing(
     for _ in range(LOADINGS if ground.memory else 1):
         if ground.memory:
             motion = at_zero(system)
-            rail, rates = _rolled_up(system, motion, force, int(PRELOAD * ground.memory))
+            rail, rates = _rolled_up(system, motion, force, ground.memory)
             displaced = rail - ground.yields @ force + pressed
         before = force
         given = bodies, displaced, compliance, laws, system.loads, relative
@@ -284,10 +284,14 @@ def _on_support(ground: Ground) -> Flags:
     return largest <= ON_SUPPORT * steepest
 
 
-def _rolled_up(system: System, motion: Motion, force: Array, steps: int) -> tuple[Array, Array]:
-    """Let constant forces roll on a rail; its displacements under the contacts, m, and their rates, m/s."""
+def _rolled_up(system: System, motion: Motion, force: Array, memory: int) -> tuple[Array, Array]:
+    """Let constant forces roll on a rail; its displacements under the contacts, m, and their rates, m/s.
+
+    The rail remembers so many time steps.
+    """
     before = np.zeros(len(force))
     channels = system.channels
+    steps = memory if channels.scatters.all() else PRELOAD * memory
     preload_channels(channels, motion, force, steps, before)
     rates = (motion.rail_ahead - before) / system.time_step
     np.add.at(motion.rail_ahead, channels.receiver, motion.rail_now * force[channels.source])
