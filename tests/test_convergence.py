@@ -185,7 +185,7 @@ def converged(monkeypatch):
     """Compare a case with some settings alone."""
 
     def converged(prepared, *settings):
-        result = asperity.run(prepared)
+        result = asperity.run(prepared, brief=True)
         monkeypatch.setattr(converging, "settings_of", lambda *_: settings)
         return converging.with_convergence(prepared, result, lambda *_: None)
 

@@ -88,9 +88,9 @@ def test_linear_contact_is_within_one_decibel_of_the_frequency_domain():
     assert np.abs(levels[0] - levels[1])[away].max() < 1.0
 
 
-def levels_on_textures(kept, speed, seeds, kernels):
+def levels_on_textures(kept, speed, seeds, kernels, scattered=False):
     """Force levels in bands over textures, as rolled and by the frequency domain; of a rail its kernels."""
-    rail = rail_at(TRACK, speed, STEP, [0.0], cache=kept)
+    rail = rail_at(TRACK, speed, STEP, [0.0], scattered=scattered, cache=kept)
     assert len(rail.at_speeds) == kernels
     path = {"start": 0.0, "duration": 1.6, "settling": 0.4, "time_step": STEP, "positions": [0.0]}
     power = 0.0
@@ -105,9 +105,12 @@ def levels_on_textures(kept, speed, seeds, kernels):
 
 
 def test_a_slow_run_up_on_a_rail_is_constant_speeds_band_by_band(kept):
-    """40 to 56 m/s in 1.6 s: beside the frequency domain for the texture that is met, and beside 48 m/s."""
-    rising = levels_on_textures(kept, SpeedCourse([0.0, 1.6], [40.0, 56.0]), [5], 9)
-    constant = levels_on_textures(kept, 48.0, [5], 1)
+    """40 to 56 m/s in 1.6 s: beside the frequency domain for the texture that is met, and beside 48 m/s.
+
+    All by kernels themselves, since fits of nine take long; half of them are fitted in the next one.
+    """
+    rising = levels_on_textures(kept, SpeedCourse([0.0, 1.6], [40.0, 56.0]), [5], 9, scattered=True)
+    constant = levels_on_textures(kept, 48.0, [5], 1, scattered=True)
     np.testing.assert_allclose(*rising, atol=0.46)
     np.testing.assert_allclose(rising[0], constant[0], atol=0.34)
     np.testing.assert_allclose(*constant, atol=0.57)
@@ -185,7 +188,7 @@ def test_a_point_moves_with_the_contact_when_it_is_passed(kernel):
         passed(kernel, history, origin, [np.nan])
 
 
-@pytest.mark.parametrize("course", [([0.0, 0.16], [16.0, 20.0]), ([0.1, 0.16], [20.0, 16.0])])
+@pytest.mark.parametrize("course", [([0.0, 0.08], [18.0, 20.0]), ([0.1, 0.13], [20.0, 18.0])])
 def test_a_rail_moves_as_by_superposition_at_fixed_points_while_the_speed_changes(kept, course, monkeypatch):
     """Under wheels 2.5 m apart at 25 to 67 m/s²: kernels of constant speeds, beside those of no speed.
 

@@ -5,6 +5,7 @@ decays: what a stretch reflects and lets through (never what it would take to un
 half a track by doubling the cell, and from there waves that are carried from support to support.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -109,6 +110,10 @@ class CellWaves:
         decaying = self._shape(self.decaying, last[0], parts)
         waves = decaying * self._shape(self.growing, first[0], parts if x == x0 else self._parts(*first))
         return np.sum(waves * self._carried(first[0], last[0]), axis=0)
+
+    def receptances(self, places: Sequence[float], x0: float) -> list[Complex]:
+        """Displacements (f,), m/N, at places per force at `x0`; from the first support, m."""
+        return [self.receptance(place, x0) for place in places]
 
     def _span(self, x: float) -> tuple[int, float]:
         """Number of the span at a place of the stretch, counted on through the cells, and the place in it."""

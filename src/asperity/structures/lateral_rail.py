@@ -21,6 +21,8 @@ THIRD = 1.0 / 3.0
 """Lateral stiffness of a pad over its vertical one."""
 SIDE = 0.02
 """Depth below the top of the head at which a hammer strikes its side, m: about its middle."""
+KEPT = 2
+"""Waves that are kept: on the lines of a spectrum, and at the frequencies that are shown."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -271,8 +273,23 @@ class LateralTrack(LateralParameters):
         return FreeWaves(k, shapes, -0.5j * larger / (k * slope))
 
     def waves(self, omega: ArrayLike) -> LateralWaves:
-        """The waves of the supported rail at angular frequencies (f,), rad/s, as of `Track.waves`."""
+        """The waves of the supported rail at angular frequencies (f,), rad/s, as of `Track.waves`.
+
+        Those that were asked for last are kept: force, decay and sound ask for the same.
+        """
         omega = np.atleast_1d(np.asarray(omega, dtype=complex))
+        asked = omega.tobytes()
+        if asked not in self._kept:
+            while len(self._kept) >= KEPT:
+                del self._kept[next(iter(self._kept))]
+            self._kept[asked] = self._waves(omega)
+        return self._kept[asked]
+
+    @cached_property
+    def _kept(self) -> dict[bytes, LateralWaves]:
+        return {}
+
+    def _waves(self, omega: Complex) -> LateralWaves:
         track = self.track
         if not self._is_damped:
             omega = omega * (1.0 - VANISHING_DAMPING * 1j)

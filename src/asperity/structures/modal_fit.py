@@ -1,12 +1,14 @@
 """Vector fitting: common poles of many responses, and modes that they make."""
 
 from collections.abc import Callable
-from functools import partial
+from dataclasses import dataclass
+from functools import cached_property, partial
 from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
 import scipy
+from scipy.linalg import lapack
 
 from asperity import errors
 from asperity.arguments import Array, ArrayLike, Complex, Flags, Indices, NDArray, require
@@ -15,6 +17,9 @@ from asperity.spectra import root_mean_square
 from asperity.structures.modal import modal_answers
 from asperity.threads import one_thread_in_linear_algebra
 from asperity.written_numbers import count_of, rounded
+
+BLOCK = 64
+"""Columns that are reflected together."""
 
 
 def vector_fit(
@@ -49,13 +54,13 @@ def vector_fit(
     right = np.concatenate([weighted.real, weighted.imag], axis=1).T
     best = moved
     least = np.inf
+    fitted = _Fitted(s, weight, moved)
     for _ in range(iterations):
-        moved = _stable(_relocated(s, weight, spanning, moved), radius)
+        moved = _stable(_relocated(fitted, spanning), radius)
         if moved.size == 0 or not np.isfinite(moved).all():
             break
-        matrix = _stacked(weight[:, None] * partial_fractions(s, moved))
-        solution = least_squares(matrix, right)
-        error = float(np.linalg.norm(matrix @ solution - right) / scale) if scale > 0.0 else 0.0
+        fitted = _Fitted(s, weight, moved)
+        error = float(np.linalg.norm(fitted.left_of(right)) / scale) if scale > 0.0 else 0.0
         if error < least:
             best = moved
             least = error
@@ -106,20 +111,43 @@ def _stacked(matrix: Complex) -> Array:
     return np.concatenate([matrix.real, matrix.imag])
 
 
-def _relocated(s: Complex, weight: Array, spanning: Complex, poles: Complex) -> Complex:
+@dataclass(frozen=True, eq=False)
+class _Fitted:
+    """Partial fractions of some poles, with which weighted responses are fitted by least squares."""
+
+    points: Complex
+    weight: Array
+    poles: Complex
+
+    @cached_property
+    def basis(self) -> Complex:
+        return partial_fractions(self.points, self.poles)
+
+    @cached_property
+    def _reflectors(self) -> tuple[Array, Array]:
+        reflectors, scales, *_ = lapack.dgeqrf(_stacked(self.weight[:, None] * self.basis))
+        return reflectors, scales
+
+    def left_of(self, columns: Array) -> Array:
+        """What no fractions fit of columns (2 n, k), in as many coordinates (2 n − p, k) as it has."""
+        reflectors, scales = self._reflectors
+        room = BLOCK * columns.shape[1]
+        turned, *_ = lapack.dormqr("L", "T", reflectors, scales, columns, room)
+        return np.asarray(turned[len(scales) :])
+
+
+def _relocated(fitted: _Fitted, spanning: Complex) -> Complex:
     """Zeros of the fitted scaling function: the next poles."""
-    basis = partial_fractions(s, poles)
-    known = _stacked(weight[:, None] * basis)
-    unknowns = basis.shape[1]
-    scaling = np.column_stack([basis, np.ones(s.size)])
+    poles = fitted.poles
+    scaling = np.column_stack([fitted.basis, np.ones(fitted.points.size)])
     blocks: list[Array] = []
     for response in spanning:  # already weighted
-        system = np.hstack([known, -_stacked(response[:, None] * scaling)])
-        blocks.append(np.asarray(np.linalg.qr(system, mode="r"))[unknowns:, unknowns:])
-    scale = np.linalg.norm(spanning) / s.size
+        left = fitted.left_of(_stacked(response[:, None] * scaling))
+        blocks.append(np.asarray(np.linalg.qr(left, mode="r")))
+    scale = np.linalg.norm(spanning) / fitted.points.size
     matrix = np.vstack([*blocks, scale * scaling.real.sum(axis=0)])  # the last row keeps it from zero
     right = np.zeros(len(matrix))
-    right[-1] = scale * s.size
+    right[-1] = scale * fitted.points.size
     solution = least_squares(matrix, right)
     # real state matrix and input vector of the partial fractions
     used = real_basis(poles)

@@ -1,5 +1,6 @@
 """The exact receptance of a rail on periodic supports."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -148,11 +149,13 @@ class PeriodicWaves:
 
     def outgoing(self, x: float) -> Complex:
         """Shapes (2, f) of the waves that decay towards growing x, 0 <= x <= L, m: phi_lambda(x), scaled."""
-        return self._shapes(x)[0]
+        near, far = self._from_both_ends(x)
+        return far + self.multipliers * near
 
     def incoming(self, x: float) -> Complex:
         """Shapes (2, f) of the waves that grow towards growing x, 0 <= x <= L: phi_{1/lambda}(x), scaled."""
-        return self._shapes(x)[1]
+        near, far = self._from_both_ends(x)
+        return far + near / self.multipliers
 
     def symmetric_shapes(self, places: Array) -> tuple[Complex, Complex]:
         """Shapes at places (p,), m, that lie symmetrically about the middle of the bay: two of (p, 2, f).
@@ -176,25 +179,33 @@ class PeriodicWaves:
         near = np.einsum("ijf,pif->pjf", self.weights, sines)
         return near[::-1] + self.multipliers * near, near[::-1] + near / self.multipliers
 
-    def _shapes(self, x: float) -> tuple[Complex, Complex]:
-        """Shapes of outgoing and incoming waves, each (2, f)."""
+    def _from_both_ends(self, x: float) -> tuple[Complex, Complex]:
+        """What shapes consist of: sines from the support before a place and from the next, each (2, f)."""
         near, far = (
             np.einsum("ijf,if->jf", self.weights, np.sin(self.wavenumbers * at))
             for at in (x, self.spacing - x)
         )
-        return far + self.multipliers * near, far + near / self.multipliers
+        return near, far
 
     def receptance(self, x: float, x0: float) -> Complex:
         """Displacement at `x` per force at `x0`, (f,), m/N; positions from any support, m."""
-        first = min(x, x0)
-        last = max(x, x0)
-        first_bay = np.floor(first / self.spacing)
-        start = first - first_bay * self.spacing
-        bays = np.floor(last / self.spacing)
-        along = last - bays * self.spacing
-        outgoing, incoming = self._shapes(along)
-        waves = self.coefficients * outgoing * (incoming if along == start else self.incoming(start))
-        return np.sum(waves * self.multipliers ** (bays - first_bay), axis=0)
+        (found,) = self.receptances([max(x, x0)], min(x, x0))
+        return found
+
+    def receptances(self, places: Sequence[float], x0: float) -> list[Complex]:
+        """Displacements (f,), m/N, at places, none before `x0`, per force there; from any support, m."""
+        first_bay = np.floor(x0 / self.spacing)
+        start = x0 - first_bay * self.spacing
+        near, far = self._from_both_ends(start)
+        incoming = far + near / self.multipliers
+        found = []
+        for last in places:
+            bays = np.floor(last / self.spacing)
+            along = last - bays * self.spacing
+            outgoing = far + self.multipliers * near if along == start else self.outgoing(along)
+            waves = self.coefficients * outgoing * incoming
+            found.append(np.sum(waves * self.multipliers ** (bays - first_bay), axis=0))
+        return found
 
 
 def periodic_waves(

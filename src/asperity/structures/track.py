@@ -529,7 +529,7 @@ def decay_rate_en15461(track: Track, frequency: ArrayLike) -> Array:
     distances = track.sleeper_spacing * np.array(EN_15461_BAYS)
     rates = []
     for force in track.mid_spans:
-        each = [[waves.receptance(force + distance, force) for distance in distances] for waves in struck]
+        each = [waves.receptances(force + distances, force) for waves in struck]
         responses = np.mean(each, axis=0)
         rates.append(decay_rate_of_responses(distances, np.abs(responses)))
     return np.mean(rates, axis=0).reshape(frequency.shape)
