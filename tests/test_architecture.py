@@ -109,8 +109,10 @@ WAITING = {
     "import asperity.laws, asperity.case.scene, asperity.case.beam": [
         "numba", "scipy.fft", "scipy.optimize", "xarray", "matplotlib",
     ],
+    "import asperity.serving.worker": ["numba", "xarray", "matplotlib"],
     "import asperity.scenarios.preparing": LATE,  # what is written out, is loaded when first named
     "import asperity.scenes.report as r; r.names_of_reports()": ["matplotlib"],  # it draws for papers
+    "import asperity.reporting.sound, asperity.running": ["scipy.signal", "scipy.stats"],
 }  # fmt: skip
 """What waits for its use after each of these, one after the other in one process."""
 

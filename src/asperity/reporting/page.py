@@ -3,10 +3,8 @@
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
 from typing import Any
 
-from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 from markupsafe import Markup
 from xarray import DataTree
 
@@ -17,8 +15,8 @@ from asperity.reporting import data, headline, payload
 from asperity.reporting.chart import Line, colour_variables
 from asperity.reporting.figure import Chapter, Figure, PageFigure
 from asperity.reporting.tables import ReportTable, setting_names
+from asperity.reporting.templates import page_template
 from asperity.schema import provenance
-from asperity.written_numbers import unbroken
 
 Block = PageFigure | ReportTable
 
@@ -61,20 +59,6 @@ def whole_page(
         **words,
     )
     return printable(text, lines=True)
-
-
-@cache
-def page_template(name: str, package: str = "asperity.reporting") -> Template:
-    """A template of a package, which writes text of others so that it is seen and does nothing."""
-    environment = Environment(
-        loader=PackageLoader(package, ""),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters["unbroken"] = unbroken
-    return environment.get_template(name)
 
 
 @dataclass(frozen=True)

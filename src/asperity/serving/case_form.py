@@ -15,7 +15,7 @@ from asperity.case.speed import Speed, names_table
 from asperity.errors import InputError
 from asperity.files import amount
 from asperity.parameters import Choice, Either, File, Flag, ListOf, MaterialOrName, Number
-from asperity.reporting.page import page_template
+from asperity.reporting.templates import page_template
 from asperity.serving.stored_runs import LARGEST_UPLOAD
 
 LONGEST_VALUE = 2000

@@ -13,6 +13,7 @@ from asperity.arguments import Array
 from asperity.reporting import chart, data, page, payload
 from asperity.reporting.comparison_page import compared_blocks, summary
 from asperity.reporting.figure import PageFigure
+from asperity.reporting.templates import page_template
 from asperity.results import read_result
 from asperity.scenes.figures import bearing
 from asperity.scenes.figures.force import force_bands, force_envelope
@@ -112,7 +113,7 @@ def told_blocks(blocks: Sequence[page.Block], unticked: Sequence[str] = ()) -> d
 
     Laws that are `unticked` are not shown at first.
     """
-    macros: Any = page.page_template("blocks.html.jinja").module
+    macros: Any = page_template("blocks.html.jinja").module
     charts = {block.name: block.chart for block in blocks if isinstance(block, PageFigure)}
     # no file lies beside this page
     elements = (
