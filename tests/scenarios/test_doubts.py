@@ -24,6 +24,7 @@ BOGIE = {"type": "bogie", "mass": "0.5 kg", "masses": ["4 kg"], "springs": ["20 
 CHAIN = {"type": "chain", "mass": "0.5 kg", "masses": ["0.1 kg", "4 kg"], "load": "60 N"}
 CHAIN |= {"springs": ["20 kN/m", "100 N/m"], "dampers": ["5 N s/m", "5 N s/m"]}
 WHEEL = small_cases.HEARD | {"kind": "wheel-on-rail", "laws": ["hertz"], "surface": {"smooth": True}}
+WHEEL |= {"wheel": {"section": "rigid"}, "duration": "20 ms"}
 
 NU205 = {
     "kind": "roller-bearing",

@@ -107,9 +107,9 @@ def test_a_map_is_rolled_over_in_the_direction_asked_for():
 
 
 def test_measured_maps_are_tested_for_being_the_same_everywhere(real_runs):
-    texture = 0.02 * UM * np.random.default_rng(5).normal(size=(5, 120, 120))
+    texture = 0.02 * UM * np.random.default_rng(5).normal(size=(5, 72, 72))
     told = {}
-    for name, factor in (("even", 1.0), ("trend", np.linspace(0.3, 1.7, 120)[:, None])):
+    for name, factor in (("even", 1.0), ("trend", np.linspace(0.3, 1.7, 72)[:, None])):
         maps = tuple(HeightMap(each, SIDE) for each in texture * factor)
         tree = asperity.run(changed("ball-on-beam", laws=["linear"], surface={"file": maps}))
         warned = [w["message"] for w in json.loads(tree.attrs["warnings"]) if "Inhomog" in w["category"]]
