@@ -40,6 +40,7 @@ def test_a_second_process_runs_while_it_is_needed_and_is_waited_for(started, mon
     told, pressed, half_space = [], [], pressed_once.HalfSpace
     look = lambda *given, cells: pressed.append(cells) or half_space(*given, cells=cells)  # noqa: E731
     monkeypatch.setattr(pressed_once, "HalfSpace", look)
+    pressed_once.press_once.cache_clear()
     compiling.compile_kernels(lambda *report: told.append(report), "whole", "covered")  # not for ever
     assert pressed == ["whole", "covered"]
     assert "press_once(*('whole', 'covered'))" in started[1].told

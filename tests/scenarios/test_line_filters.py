@@ -23,7 +23,7 @@ BALL = {
     "kind": "ball-on-beam",
     "laws": ["shifted", "printed", "shifted-unfiltered", "printed-unfiltered", "hertz-filtered", "linear"],
     "start": "0.45 m",
-    "duration": "20 ms",
+    "duration": "10 ms",
     "surface": {"rms": "0.04 um", "longest": "0.36 mm", "shortest": "60 um"},
     "contact": {"spacing": "20 um", "window": "0.66 mm", "samples": 2, "sample_length": "3 mm"},
     "ball": {"load": "30 N"},
@@ -171,7 +171,7 @@ def test_printed_asymptote_without_long_waves_is_warned_of(runs, tree):
     assert f"its force keeps {-20 * np.log10(ratio):.1f} dB" in message
     assert 'Set contact.normalise = "tangent"' in message
     assert not warned_of_filters(runs(case_of(laws=["shifted", "printed-unfiltered"])))  # no law uses it
-    long = {"contact": {"sample_length": "20 mm", "samples": 1}, "surface": {"longest": "8 mm"}}
+    long = {"contact": {"sample_length": "10 mm", "samples": 1}, "surface": {"longest": "4 mm"}}
     assert not warned_of_filters(runs(case_of(laws=["printed"], **long)))
 
 

@@ -24,8 +24,9 @@ TEXTURES = {
 }
 FINE = {"ball-on-beam": {}, "wheel-on-rail": {"spacing": "0.5 mm"}}
 STATES = np.cumsum(np.linspace(0.1, 0.3, 12)) * 1e-6  # m
+TABLE = {"laws": ["table"], "duration": "8 ms"}
 ROLLED = {
-    "held down": {"laws": ["table"]},
+    "held down": TABLE,
     "thrown off": {"laws": ["table"], "surface": {"rms": "0.1 um"}, "ball": {"load": "5 N"}},
 }
 
@@ -112,7 +113,7 @@ def test_a_motion_that_leaves_what_was_scanned_is_rolled_anew_over_more(own_cach
 def test_a_motion_that_the_states_scanned_do_not_carry_is_rolled_over_all(own_cache, monkeypatch, seed):
     """Under one seed none of the states expected touches at the start, under the other motion goes beyond."""
     keys = {"surface": {"rms": "2 um"}, "ball": {"load": "5 N"}, "settling": "0 s", "seed": seed}
-    case = changed("ball-on-beam", laws=["table"], **keys)
+    case = changed("ball-on-beam", **TABLE, **keys)
     every, whole = rolled(monkeypatch, case, (0.0, 1e9))
     few, states = rolled(monkeypatch, case, (0.75, 1.25))
     assert states == whole
@@ -125,7 +126,7 @@ def test_what_fails_over_all_states_fails(own_cache, monkeypatch):
 
     monkeypatch.setattr("asperity.scenes.compute.roll_bodies", fail)
     with pytest.raises(ComputationError, match="no rest"):
-        compute(prepare_case(changed("ball-on-beam", laws=["table"])), lambda *_: None)
+        compute(prepare_case(changed("ball-on-beam", **TABLE)), lambda *_: None)
 
 
 def level(heights, step, highest):

@@ -29,7 +29,7 @@ GUIDE = ModalStructure(X, [200.0], 0.01, np.sin(np.pi * X)[:, None], modal_masse
 BASES = {
     "ball-on-beam": small_cases.BALL | {"laws": ["linear"], "settling": "60 ms", "surface": SMOOTH},
     "wheel-on-rail": small_cases.HEARD
-    | {"kind": "wheel-on-rail", "duration": "20 ms", "settling": "60 ms", "surface": SMOOTH}
+    | {"kind": "wheel-on-rail", "duration": "20 ms", "settling": "20 ms", "surface": SMOOTH}
     | {"contact": {"spacing": "0.5 mm", "samples": 2}, "wheel": {"section": "rigid"}}
     | {"numerics": {"highest_frequency": "2 kHz", "kernel": "scatter"}},
     "bodies": small_cases.BODIES | {"laws": ["linear"], "settling": "60 ms", "surface": SMOOTH},

@@ -58,7 +58,7 @@ def test_members_share_scans_and_have_the_digits_that_they_have_alone(
     """
     *_, last = study_of(case, sweep).members()
     monkeypatch.setenv("ASPERITY_CACHE", "alone")
-    alone, of_one = packed(kept(run(last.case))), stored("scan-")
+    alone, of_one = packed(kept(run(last.case, brief=True))), stored("scan-")
     assert of_one
     monkeypatch.setenv("ASPERITY_CACHE", "together")
     monkeypatch.setattr("asperity.surfaces.strip.pieces", Fields())

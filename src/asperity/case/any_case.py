@@ -79,10 +79,10 @@ def entries(model: type[Section], title: str = "") -> Iterator[CaseKey]:
 
 def entry_of(model: type[Section], dotted: str) -> CaseKey:
     """Find a key of a kind of case by its name with its section, as ``"contact.spacing"``."""
-    by_name = {entry.dotted: entry for entry in entries(model)}
     title, _, name = dotted.rpartition(".")
     if (inner := model.section_at(title)) and name in inner.model.keys:
         return CaseKey(dotted, inner.model.keys[name])
+    by_name = {entry.dotted: entry for entry in entries(model)}
     if dotted in by_name:
         return by_name[dotted]
     homes = [name for name, entry in by_name.items() if entry.name == dotted]

@@ -290,7 +290,8 @@ class Section:
     def _with(self, values: Mapping[str, Any], given_names: frozenset[str]) -> Self:
         """The same keys and sections with other values for some, and names of those that count as given."""
         made = type(self).__new__(type(self))
-        read = {name: each for name, each in vars(self).items() if name in self.keys or self.section_at(name)}
+        inside = self.keys.keys() | self.sections().keys()
+        read = {name: each for name, each in vars(self).items() if name in inside or name.endswith("]")}
         made.__dict__.update({**read, **values, "given_names": given_names})
         return made
 

@@ -6,6 +6,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext, suppress
 from contextvars import ContextVar
+from functools import cache
 
 import numpy as np
 
@@ -106,8 +107,9 @@ def _contact_compiled_beside(cells: tuple[str, ...]) -> Iterator[subprocess.Pope
                 other.kill()
 
 
+@cache
 def roll_once() -> None:
-    """Roll two masses a few steps over a beam, and evaluate a law by itself."""
+    """Roll two masses a few steps over a beam, and evaluate a law by itself: once in a process."""
     beam = Beam.rectangular(1.0, 0.05, 0.01, material("steel"), highest_frequency=100.0)
     law = HertzLaw(1e10, StateTexture.unfiltered(np.zeros(8), 0.2))
     bodies = [Body.rigid(0.5, 5.0)] * 2
