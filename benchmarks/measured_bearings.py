@@ -27,7 +27,7 @@ import numpy as np
 
 import asperity
 from asperity import BallBearing, BearingUnderLoad
-from asperity.diagnostics.envelopes import analytic_signal
+from asperity.diagnostics.envelopes import band_envelope
 
 NICE_FILE, HIT_FILE, PIT_FILE = "mfpt_nice_48k.npz", "hit_6205_51k.npz", "cwru_6205_12k.npz"
 PREDICTED = Path(__file__).with_suffix(".json")
@@ -85,7 +85,7 @@ def lines_of(
     band: tuple[float, float] = BAND,
 ) -> dict[str, Any]:
     """First line of the envelope, its frequency to a hundredth of what the record resolves, side bands."""
-    envelope = np.abs(analytic_signal(signal - signal.mean(), rate, *band))
+    envelope = band_envelope(signal - signal.mean(), rate, *band)
     window = np.hanning(envelope.size)
     spectrum = np.abs(np.fft.rfft(2.0 / window.sum() * window * (envelope - envelope.mean()), FINE))
     step, order = rate / FINE, np.arange(1, 6)

@@ -167,8 +167,9 @@ def test_what_lies_above_the_lines_that_are_sought_changes_none_of_those_below()
     every = Prominence.of(spectrum)
     some = Prominence.of(spectrum, highest=700.0)
     assert some.amplitude.size == 1_401
-    for name in ("amplitude", "background", "log_ratio"):
+    for name in ("amplitude", "log_ratio"):
         np.testing.assert_array_equal(getattr(some, name), getattr(every, name)[:1_401])
+    np.testing.assert_array_equal(*(each.background(np.arange(1_401)) for each in (some, every)))
 
 
 def test_noise_says_nothing_of_speed_and_parts():

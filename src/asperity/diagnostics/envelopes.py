@@ -149,23 +149,31 @@ def envelope_spectrum(signal: ArrayLike, rate: float, band: tuple[float, float] 
     received = f"{low:g} to {high:g} Hz"
     allowed = f"rising, within 0 to {0.5 * rate:g} Hz"
     require(0.0 <= low < high <= 0.5 * rate, "band", received, allowed)
-    frequency, amplitude = amplitude_spectrum(np.abs(analytic_signal(values, rate, low, high)), rate)
+    frequency, amplitude = amplitude_spectrum(band_envelope(values, rate, low, high), rate)
     kept = frequency <= high - low
     return frequency[kept], amplitude[kept]
 
 
-def analytic_signal(values: Array, rate: float, low: float, high: float) -> Array:
-    """Analytic signal (n,) of what lies between two frequencies, Hz."""
-    from scipy.fft import ifft, rfft
+def band_envelope(values: Array, rate: float, low: float, high: float) -> Array:
+    """Size (n,) of the analytic signal of what lies between two frequencies, Hz."""
+    from scipy.fft import irfft, rfft
 
-    lines = np.zeros(values.size, dtype=np.complex128)
-    below_half = (values.size + 1) // 2
-    frequency = np.arange(below_half) * (rate / values.size)
+    frequency = np.arange((values.size + 1) // 2) * (rate / values.size)
     first = np.searchsorted(frequency, low)
     last = np.searchsorted(frequency, high, side="right")
     del frequency
-    np.multiply(rfft(values)[first:last], 2.0, out=lines[first:last])
-    return np.asarray(ifft(lines, overwrite_x=True))
+    lines = rfft(values)
+    lines[:first] = 0.0
+    lines[last:] = 0.0
+    lines[0] *= 2.0  # the others have an opposite one
+    envelope = irfft(lines, values.size)
+    lines *= -1j
+    turned = irfft(lines, values.size, overwrite_x=True)  # by a quarter of a period
+    del lines
+    envelope *= envelope
+    turned *= turned
+    envelope += turned
+    return np.asarray(np.sqrt(envelope, out=envelope))
 
 
 def above_frequency(values: Array, rate: float, lowest: float) -> Array:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from asperity.arguments import Array
-from asperity.diagnostics.envelopes import analytic_signal, mean_spectrum, prewhitened
+from asperity.diagnostics.envelopes import band_envelope, mean_spectrum, prewhitened
 from asperity.diagnostics.kurtogram import Kurtogram
 from asperity.diagnostics.lines import STANDS_OUT
 from asperity.diagnostics.prominence import LOWEST_PLACE, SPREAD, Prominence
@@ -181,11 +181,11 @@ class BearingRecord:
 
         def white(block: Array) -> Array:
             level = 1.0 if step == 1 else float(block.std())  # a loud block stays louder than others
-            return np.abs(analytic_signal(level * prewhitened(block, rate), rate, 0.0, 0.5 * rate))
+            return band_envelope(level * prewhitened(block, rate), rate, 0.0, 0.5 * rate)
 
         def ringing(block: Array) -> Array:
             heard = prewhitened(block, rate) if beat(block, rate, limits) else block
-            return np.abs(analytic_signal(heard, rate, *limits))
+            return band_envelope(heard, rate, *limits)
 
         def seen(view: Callable[[Array], Array], what: str) -> Iterator[Array]:
             return counted(pieces.seen(view, step), len(pieces), what, progress)
@@ -333,7 +333,7 @@ class BearingRecord:
             middle = middle[inside]
             around = middle[:, None] + np.arange(-2, 3)
             place = np.take_along_axis(around, view.amplitude[around].argmax(axis=1)[:, None], axis=1)[:, 0]
-            clear = view.amplitude[place] >= STANDS_OUT * view.background[place]
+            clear = view.amplitude[place] >= STANDS_OUT * view.background(place)
             said += [(p * view.step / n, n) for p, n in zip(place[clear], order[clear], strict=True)]
         if len(said) < 3:
             return about

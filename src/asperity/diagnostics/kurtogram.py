@@ -77,9 +77,11 @@ def kurtogram(signal: ArrayLike, rate: float, least_width: float = 0.0) -> Kurto
     from scipy.fft import ifft, rfft
 
     values, rate = checked_signal(signal, rate)
-    values = values / np.abs(values).max()
+    values /= np.abs(values).max()
     lines = rfft(values)
-    whole = (values**2).sum() * values.size
+    values *= values  # in place: a record may be as long as memory allows
+    whole = values.sum() * values.size
+    del values
     rows = []
     for count in SPLITS:
         width = 0.5 * rate / count
@@ -88,7 +90,9 @@ def kurtogram(signal: ArrayLike, rate: float, least_width: float = 0.0) -> Kurto
         for number in range(count):
             first, last = (1 + (lines.size - 1) * each // count for each in (number, number + 1))
             part = ifft(lines[first:last])  # at the rate that the band needs
-            power = np.abs(part) ** 2
+            power = np.abs(part)
+            del part
+            power *= power
             share = 2.0 * power.sum() * power.size / whole
             peaks = float((power**2).mean() / max(power.mean() ** 2, 1e-300) - 2.0)
             rows.append((float(count), number * width, (number + 1) * width, peaks, float(share)))

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from asperity.arguments import Array, ArrayLike, finite_array, positive, require
-from asperity.diagnostics.envelopes import Spectrum, amplitude_spectrum, analytic_signal, checked_signal
+from asperity.diagnostics.envelopes import Spectrum, amplitude_spectrum, band_envelope, checked_signal
 from asperity.spectra import hann_window
 from asperity.speeds import FEWEST_TURNS
 from asperity.written_numbers import count_of, rounded
@@ -146,7 +146,7 @@ def envelope_order_spectrum(
     What rings does so in a band of frequencies, Hz, that stays; how often it is struck follows the speed.
     """
     values, rate = checked_signal(signal, rate)
-    return amplitude_spectrum(*over_angle(np.abs(analytic_signal(values, rate, *band)), turns))
+    return amplitude_spectrum(*over_angle(band_envelope(values, rate, *band), turns))
 
 
 @dataclass(frozen=True, eq=False)

@@ -51,8 +51,10 @@ class Prominence:
     ----------
     step : float
         Between places, Hz: half of what the record resolves.
-    amplitude, background : ndarray (f,)
-        In the unit of the signal, and the median around each place.
+    amplitude : ndarray (f,)
+        In the unit of the signal.
+    medians : (ndarray (m,), ndarray (m,))
+        Places, and the median around each; see `background`.
     log_ratio : ndarray (f,)
         Logarithm of the highest of them within one resolution, from 0 to ln 30: a line shall not stand for
         all.
@@ -62,7 +64,7 @@ class Prominence:
 
     step: float
     amplitude: Array
-    background: Array
+    medians: tuple[Array, Array]
     log_ratio: Array
     level: float
 
@@ -84,15 +86,18 @@ class Prominence:
             first = max(int(centre - half), LOWEST_PLACE - 1)
             last = int(centre + half)
             medians.append(median(amplitude[min(first, amplitude.size - 1) : last]))
-        background = np.interp(np.arange(amplitude.size), centres, medians)
-        ratio = amplitude / np.maximum(background, 1e-300)
+        ratio = np.interp(np.arange(amplitude.size), centres, medians)
+        np.maximum(ratio, 1e-300, out=ratio)  # in place: a record may be as long as memory allows
+        np.divide(amplitude, ratio, out=ratio)
         ratio[: LOWEST_PLACE - 1] = 0.0
         kept = slice(None)
         if highest < frequency[-1]:
             kept = slice(0, int(highest / frequency[1]) + 1)
         ratio = maximum_filter1d(ratio, 2 * WITHIN + 1)[kept]
-        log_ratio = np.log(np.clip(_as_of_one(ratio, means), 1.0, COUNTED))
-        return cls(float(frequency[1]), amplitude[kept].copy(), background[kept].copy(), log_ratio, level)
+        log_ratio = np.clip(_as_of_one(ratio, means), 1.0, COUNTED)
+        np.log(log_ratio, out=log_ratio)
+        around = np.array(centres), np.array(medians)
+        return cls(float(frequency[1]), amplitude[kept].copy(), around, log_ratio, level)
 
     @classmethod
     def of_envelopes(
@@ -107,13 +112,17 @@ class Prominence:
         up to a highest frequency, Hz."""
         levelled = ((each, float(each.mean())) for each in envelopes)
         (frequency, amplitude), level = mean_spectrum(levelled, rate)
-        held = frequency <= width
+        held = slice(np.searchsorted(frequency, width, side="right"))
         return cls.of((frequency[held], amplitude[held]), level, means, highest)
 
     @property
     def spectrum(self) -> Spectrum:
         """Frequencies (f,), Hz, and amplitudes (f,)."""
         return np.arange(float(self.amplitude.size)) * self.step, self.amplitude
+
+    def background(self, place: Indices) -> Array:
+        """Median around places (k,), in the unit of the signal, between those where it was taken."""
+        return np.interp(place, *self.medians)
 
     def at(self, frequency: Array) -> Array:
         """Logarithms of ratios at frequencies of any shape, Hz; NaN beyond the spectrum."""
@@ -155,7 +164,7 @@ class Prominence:
         """Fundamental of a comb by all of its lines that stand out, the higher ones the more."""
         place, amplitude = self.lines_of(fundamental)
         order = np.rint(place * self.step / fundamental)
-        weight = np.log(np.maximum(amplitude / np.maximum(self.background[place], 1e-300), 1.0)) + 1e-9
+        weight = np.log(np.maximum(amplitude / np.maximum(self.background(place), 1e-300), 1.0)) + 1e-9
         return float((weight * order * place).sum() / (weight * order**2).sum() * self.step)
 
     def true_fundamental(self, fundamental: float, shaft: float = 0.0) -> float:
@@ -196,7 +205,7 @@ class Prominence:
         match for them.
         """
         place, amplitude = self.lines_of(fundamental)
-        beyond = np.maximum(amplitude**2 - (0.5 * STANDS_OUT * self.background[place]) ** 2, 0.0)
+        beyond = np.maximum(amplitude**2 - (0.5 * STANDS_OUT * self.background(place)) ** 2, 0.0)
         own = beyond
         if deepest > fundamental + WITHIN * self.step:
             off = place * self.step / deepest
