@@ -1,6 +1,7 @@
 """Films of line contacts by Reynolds' equation and an elastic half-plane, solved by Newton's method."""
 
 import numpy as np
+from scipy.sparse import diags_array
 
 from asperity.contact.oil import POLE, REFERENCE_PRESSURE
 
@@ -24,6 +25,10 @@ def solved_film(speed, material, load, *, compressed=True, inlet=8.0, cells=600)
     pressure = np.sqrt(np.maximum(1.0 - x**2, 0.0))
     guess = 3.0 * speed**0.69 * material**0.56 * load**-0.1 / width**2
     apart = guess - float(np.interp(0.0, x, 0.5 * x**2 + elastic @ pressure))
+    mean = diags_array([0.5, 0.5], offsets=[0, 1], shape=(cells - 1, cells))
+    rise = diags_array([-1.0 / step, 1.0 / step], offsets=[0, 1], shape=(cells - 1, cells))
+    gain = diags_array([-1.0 / step, 1.0 / step], offsets=[0, 1], shape=(cells - 2, cells - 1))
+    behind = _upwind(cells, step)
     for _ in range(80):
         film = np.maximum(apart + 0.5 * x**2 + elastic @ pressure, 1e-3 * guess)
         ratio = 1.0 + pressure * peak / REFERENCE_PRESSURE
@@ -32,24 +37,22 @@ def solved_film(speed, material, load, *, compressed=True, inlet=8.0, cells=600)
         below = 1.0 + 1.7e-9 * peak * pressure * compressed
         dense = 1.0 + 0.6e-9 * peak * pressure * compressed / below
         densing = 0.6e-9 * peak * compressed / below**2
-        # what flows by pressure, ε dp/dx, and with the surfaces; derivatives by all pressures and h₀
+        # what flows by pressure, ε dp/dx, and with the surfaces; derivatives by films, pressures and h₀
         easy = dense * film**3 * thin
-        by_film = np.column_stack([elastic, np.ones(cells)])
-        by_pressure = np.eye(cells, cells + 1)
-        easing = 3.0 * easy[:, None] / film[:, None] * by_film
-        easing += (film**3 * (densing * thin + dense * thinning))[:, None] * by_pressure
-        carried = dense * film
-        carrying = dense[:, None] * by_film + (densing * film)[:, None] * by_pressure
-        slope = np.diff(pressure) / step
-        flow = 0.5 * (easy[1:] + easy[:-1]) * slope
-        flowing = 0.5 * (easing[1:] + easing[:-1]) * slope[:, None]
-        flowing += (0.5 * (easy[1:] + easy[:-1]))[:, None] * np.diff(by_pressure, axis=0) / step
+        easing = film**3 * (densing * thin + dense * thinning)
+        slope = rise @ pressure
+        sloping = gain @ diags_array(slope) @ mean
+        by_film = sloping @ diags_array(3.0 * easy / film) - drag * behind @ diags_array(dense)
+        by_pressure = sloping @ diags_array(easing) - drag * behind @ diags_array(densing * film)
+        by_pressure += gain @ diags_array(mean @ easy) @ rise
         missed, matrix = np.zeros(cells + 1), np.zeros((cells + 1, cells + 1))
-        missed[1:-2] = np.diff(flow) / step - drag * _upwind(carried, step)
-        matrix[1:-2] = np.diff(flowing, axis=0) / step - drag * _upwind(carrying, step)
+        missed[1:-2] = gain @ (mean @ easy * slope) - drag * behind @ (dense * film)
+        matrix[1:-2, :-1] = by_film @ elastic + by_pressure.toarray()
+        matrix[1:-2, -1] = by_film.sum(axis=1)
         scale = np.abs(np.diag(matrix)[:-1]) + 1e-30
         empty = np.flatnonzero(pressure + missed[:-1] / scale <= 0.0)  # where the oil leaves
-        matrix[empty] = by_pressure[empty]
+        matrix[empty] = 0.0
+        matrix[empty, empty] = 1.0
         missed[empty] = pressure[empty]
         matrix[-1, :-1], missed[-1] = step, pressure.sum() * step - 0.5 * np.pi
         rows = 1.0 / np.abs(matrix).max(axis=1)
@@ -71,7 +74,8 @@ def _integral(distance):
     return distance * (np.log(np.abs(distance) + 1e-300) - 1.0)
 
 
-def _upwind(carried, step):
-    """Derivative of what surfaces carry, at all points but both ends, from the inlet on."""
-    inner = (1.5 * carried[2:-1] - 2.0 * carried[1:-2] + 0.5 * carried[:-3]) / step
-    return np.concatenate([(carried[1:2] - carried[:1]) / step, inner])
+def _upwind(cells, step):
+    """Derivative of what surfaces carry, at all points but both ends, from the inlet on, a matrix."""
+    found = diags_array([0.5, -2.0, 1.5], offsets=[-1, 0, 1], shape=(cells - 2, cells)).tolil()
+    found[0, :2] = -1.0, 1.0
+    return found.tocsr() / step

@@ -37,7 +37,7 @@ def without(signal, kind, firsts, size):
 
 
 KINDS = ("zeros", "held", "line", "NaN", "lost")
-PLACES = {"one": [7_013], "five": [1_201, 9_500, 17_003, 21_500, 30_007], "even": range(500, 34_000, 1_024)}
+PLACES = {"one": [7_013], "five": [1_201, 4_750, 8_503, 10_750, 15_007], "even": range(500, 34_000, 1_024)}
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -47,10 +47,10 @@ PLACES = {"one": [7_013], "five": [1_201, 9_500, 17_003, 21_500, 30_007], "even"
 @pytest.mark.filterwarnings("error")
 def test_a_tone_with_missing_samples_has_no_part_that_is_struck(kind, size, places, frequency):
     """They were blows of no part, or a ring, 97 % sure, in up to half of these records."""
+    ends = PLACES[places][-1] + 5_000
     for noise in (0.0, 1e-4):
-        found = diagnose(
-            without(tone(frequency) + noise * NOISE, kind, PLACES[places], size), RATE, TONES, SPEED
-        )
+        signal = (tone(frequency) + noise * NOISE)[:ends]
+        found = diagnose(without(signal, kind, PLACES[places], size), RATE, TONES, SPEED)
         assert (found.parts, found.blows) == ((), 0.0)
         assert noise or found.tones_alone[0] == pytest.approx(frequency, abs=12.0)
 

@@ -258,12 +258,7 @@ class AffineRange:
     @cached_property
     def power(self) -> Array:
         """Mean squares of its waves, where the spectrum is one on the longest of the surface."""
-        waves = waves_of(self.tile)
-        along, across = self.tile.size
-        scale = self.surface.longest * start_of(self.number)
-        power = np.maximum(waves.stretched * scale**2, 1.0) ** (-1.0 - self.surface.hurst)
-        # of wave 0 along, the opposite ones across are there
-        return power * np.where(waves.along > 0, 2.0, 1.0) * (scale**2 / (along * across))
+        return power_of(self.tile, self.surface.longest * start_of(self.number), self.surface.hurst)
 
     def waves(self, tile: int, across: Array) -> Waves:
         """Complex amplitudes (k, ny), m, of a tile at places across (ny,), m."""
@@ -302,9 +297,15 @@ class AffineTile(NamedTuple):
     @property
     def most(self) -> tuple[int, int]:
         """Largest numbers of waves along and across."""
-        ellipse = RANGE * np.hypot(*np.linalg.inv(drawn_out(self.anisotropy, self.lay)))
-        along, across = np.floor(self.size * np.minimum(ellipse, self.highest)).astype(int).tolist()
-        return along, across
+        return most_of(self)
+
+
+@lru_cache(maxsize=32)
+def most_of(tile: AffineTile) -> tuple[int, int]:
+    """Largest numbers of waves of a tile."""
+    ellipse = RANGE * np.hypot(*np.linalg.inv(drawn_out(tile.anisotropy, tile.lay)))
+    along, across = np.floor(tile.size * np.minimum(ellipse, tile.highest)).astype(int).tolist()
+    return along, across
 
 
 class MembersOfRange(NamedTuple):
@@ -336,6 +337,16 @@ def waves_of(tile: AffineTile) -> MembersOfRange:
     rank = np.empty(len(along), np.intp)
     rank[np.argsort(square, kind="stable")] = np.arange(len(along))
     return MembersOfRange(along, across, stretched, rank)
+
+
+@lru_cache(maxsize=32)
+def power_of(tile: AffineTile, longest: float, hurst: float) -> Array:
+    """Mean squares of the waves of a tile, where the spectrum is one on the longest of the surface."""
+    waves = waves_of(tile)
+    along, across = tile.size
+    power = np.maximum(waves.stretched * longest**2, 1.0) ** (-1.0 - hurst)
+    # of wave 0 along, the opposite ones across are there
+    return np.asarray(power * np.where(waves.along > 0, 2.0, 1.0) * (longest**2 / (along * across)))
 
 
 def to_and_fro(count: int) -> Array:
