@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from asperity.arguments import Array, Complex
-from asperity.structures.periodic_rail import refuse_decay
+from asperity.structures.periodic_rail import refuse_decay, whole_power
 
 _TRANSMITTED = 1e-9  # amplitude through half a track, from which on its end is not felt: squared it is 1e-18
 _DOUBLINGS = 64
@@ -134,7 +134,7 @@ class CellWaves:
         """Change of each wave (2, f) from one span to a later one."""
         cells, rest = divmod(last - first, len(self.steps))
         steps = self.steps[..., zone]
-        around = np.prod(steps, axis=0) ** cells if cells else np.ones_like(steps[0])
+        around = whole_power(np.prod(steps, axis=0), cells)
         for span in range(first, first + rest):
             around = around * steps[span % len(steps)]
         return around

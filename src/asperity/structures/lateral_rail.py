@@ -1,5 +1,6 @@
 """The rail sideways: lateral bending and torsion on periodic supports, solved exactly."""
 
+import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -88,13 +89,13 @@ class LateralWaves:
 
     def receptances(self, places: ArrayLike, x0: float) -> Complex:
         """Motion at places (x,), none before `x0`, per force there, (x, m, m, f); from any support, m."""
-        start = np.floor(x0 / self.spacing)
+        start = math.floor(x0 / self.spacing)
         incoming = self.incoming(x0 - start * self.spacing)
         found = []
         for last in np.asarray(places, dtype=float).tolist():
-            end = np.floor(last / self.spacing)
+            end = math.floor(last / self.spacing)
             outgoing = self.outgoing(last - end * self.spacing)
-            to = outgoing * self.coefficients * self.multipliers ** (end - start)
+            to = outgoing * self.coefficients * periodic_rail.whole_power(self.multipliers, end - start)
             found.append(np.einsum("ajf,bjf->abf", to, incoming))
         return np.stack(found)
 
