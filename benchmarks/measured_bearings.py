@@ -273,7 +273,7 @@ def speed_of(signal: np.ndarray, rate: float, nominal: float) -> float:
     step, order = rate / FINE, np.arange(1, 6)
     tried = np.arange(0.98 * nominal, 1.02 * nominal, step)
     places, clear = np.rint(np.multiply.outer(tried, order) / step).astype(int), np.zeros(tried.size)
-    for values in (signal, np.abs(analytic_signal(signal - signal.mean(), rate, *BAND))):
+    for values in (signal, band_envelope(signal - signal.mean(), rate, *BAND)):
         spectrum = padded(values)
         around = [np.median(spectrum[int(0.9 * at) : int(1.1 * at)]) for at in order * nominal / step]
         clear += np.log(np.maximum(spectrum[places] / around, 1.0)).sum(axis=1)
@@ -314,7 +314,7 @@ def onsets(signal: np.ndarray, rate: float, whole: float) -> np.ndarray:
 
     Before are 0.3 of the time from edge to edge, s, and 0.4 ms at most; after it is a quarter of that.
     """
-    energy = np.abs(analytic_signal(signal - signal.mean(), rate, *BAND)) ** 2
+    energy = band_envelope(signal - signal.mean(), rate, *BAND) ** 2
     before = round(min(0.3 * whole, 4e-4) * rate)
     after = max(2, before // 4)
     done = np.concatenate([[0.0], np.cumsum(energy)])
@@ -558,7 +558,7 @@ def periodic_rows(data: Any) -> Iterator[list[str]]:
     for name in ("OR_at_6_7", "OR_at_6_21", "IR_7", "IR_21"):
         part, signal = ("outer" if name.startswith("OR") else "inner"), data[f"1797_{name}"].astype(float)
         line = lines_of(signal, 12e3, turning.tone(part), turning.inner, 0.02, PIT_BAND)["frequency"]
-        envelope = np.abs(analytic_signal(signal - signal.mean(), 12e3, *PIT_BAND))
+        envelope = band_envelope(signal - signal.mean(), 12e3, *PIT_BAND)
         power = np.abs(np.fft.rfft(envelope - envelope.mean())) ** 2
         frequency, shaft = np.fft.rfftfreq(envelope.size, 1.0 / 12e3), speed_of(signal, 12e3, turning.inner)
         shares, near = list[str](), np.zeros(frequency.size, dtype=bool)
