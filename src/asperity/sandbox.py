@@ -35,6 +35,7 @@ _OUT_OF_TIME = -getattr(signal, "SIGXCPU", 24)
 _ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 _START = (
     "import sys, json; installed = sys.path[:]; sys.path[:] = json.loads(sys.argv[1]); "
+    "from asperity.garbage import seek_seldom; seek_seldom(); "
     "import asperity.sandbox as box; box.answer(installed)"
 )
 

@@ -1,6 +1,5 @@
 """What commands are made of: options that several have; their help, errors, exit codes and documents."""
 
-import gc
 import inspect
 import io
 import sys
@@ -19,6 +18,7 @@ import click
 from asperity import __version__, errors, files
 from asperity.case import kinds
 from asperity.errors import InputError, printable
+from asperity.garbage import seek_seldom
 from asperity.interrupts import interruptible, was_interrupted
 from asperity.terminal import (
     Manner,
@@ -42,8 +42,6 @@ FORMAT = 1
 FAILED = 3
 INTERRUPTED = 130
 _INTERRUPTED = "interrupted; run the same command again to continue"
-COLLECT_AFTER = 1_000_000
-"""New objects until unused ones are sought: imports and figures make many, and few are ever unused."""
 
 
 def templates() -> tuple[str, ...]:
@@ -157,7 +155,7 @@ class Program(Command, click.Group):
         """Run the program, with standard streams that need no reader."""
         args = sys.argv[1:] if args is None else list(args)
         name = next((word for word in args if not word.startswith("-")), "")
-        gc.set_threshold(COLLECT_AFTER)
+        seek_seldom()
         wanted = Manner(document="--json" in args)  # known before anything can be wrong
         with standard_streams(), speaking(wanted), interruptible(), _warnings_in_lines() as warned:
             try:

@@ -20,6 +20,7 @@ from asperity.written_numbers import count_of
 
 _START = (
     "import sys, json; sys.path[:] = json.loads(sys.argv[1]); "
+    "from asperity.garbage import seek_seldom; seek_seldom(); "
     "from asperity.serving.worker import {function}; {function}()"
 )
 LONGEST_ANSWER = 2**27  # bytes

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 from asperity.arguments import FilePath, require, shown, whole
 from asperity.case.any_case import AnyCase
 from asperity.errors import ComputationError, InputError
+from asperity.garbage import seek_seldom
 from asperity.interrupts import no_interrupt_for_children
 from asperity.laws import comes_with_the_program
 from asperity.progress import Progress, shown_progress
@@ -129,6 +130,7 @@ def _pool(workers: int) -> Iterator[futures.ProcessPoolExecutor]:
 
 def _begin(watched: Connection, threads: int) -> None:
     """Prepare a process: interrupts are left to the one that started it, and it ends with that one."""
+    seek_seldom()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     warnings.simplefilter("ignore")  # what a member warns of stands in its result
     os.environ.setdefault(THREADS, str(threads))
