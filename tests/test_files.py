@@ -12,6 +12,7 @@ import h5py
 import numpy as np
 import pytest
 
+from answering import ARRAYS, answered
 from asperity import files
 from asperity.errors import ComputationError, InputError
 from asperity.files import alone_in, atomic_write, is_sealed, left_overs, together, write_bytes
@@ -205,23 +206,6 @@ def test_a_word_stays_in_its_field(tmp_path):
 
 
 # --- what a function returns that was called in a process of its own
-
-ARRAYS = [
-    np.arange(6.0).reshape(3, 2).T,
-    np.float64(np.nan),
-    np.empty(0),
-    np.array(["é", "", "long words"], dtype=object),
-    np.array([1, -2], dtype=np.int32),
-]
-
-
-def answered(path, fault):
-    """Answer, or fail, as a reader of a foreign file."""
-    if fault == "input":
-        raise InputError(Path(path).name, "nothing", "something", "Write it.")
-    if fault:
-        raise KeyError("no such\tthing" + 1000 * "x")
-    return {"path": path, "low": -np.inf, "seed": np.int64(3)}, ARRAYS
 
 
 def test_what_is_received_was_sent():

@@ -36,7 +36,7 @@ def test_ranks_are_those_of_all_values_in_order(name, together, monkeypatch):
 @pytest.mark.parametrize("name", ["normal", "digits", "one value, and a few", "nearly one value"])
 def test_what_is_ranked_is_not_held_beside_itself(name, monkeypatch):
     monkeypatch.setattr("asperity.ranks.TOGETHER", 2**10)
-    values = np.tile(VALUES[name], 80)
+    values = np.tile(VALUES[name], 40)
     tracemalloc.start()
     try:
         ranked = Ranked([values])
