@@ -84,14 +84,22 @@ def pytest_unconfigure():
     _cache.cleanup()
 
 
+OPENED_APART = ("results", "structures.modal_files", "studies.kept_signals")
+OPENED_APART += ("surfaces.readers.libraries", "surfaces.readers.matlab")
+_met = set()  # what the sandbox has been asked to call
+
+
 @pytest.fixture(scope="module", autouse=True)
 def files_opened_here():
-    """Results and modes of tests are their own: only what cannot be read is opened in a sandbox.
+    """Files of tests are their own: in a sandbox are opened the first of each kind, and what cannot be read.
 
-    `test_results.py` and `faults` open all results in one.
+    Surfaces of `faults` are all opened in one, and so is what tests give back `sandboxed` for.
     """
 
     def opened(function, path, arguments, **of_file):
+        if function not in _met:
+            _met.add(function)
+            return sandbox.sandboxed(function, path, arguments, **of_file)
         try:
             sandbox.send(function(str(path.absolute()), *arguments), answer := io.BytesIO())
         except InputError:
@@ -102,7 +110,7 @@ def files_opened_here():
         return sandbox.received(answer)
 
     with pytest.MonkeyPatch.context() as patch:
-        for module in ("results", "structures.modal_files"):
+        for module in OPENED_APART:
             patch.setattr(f"asperity.{module}.sandboxed", opened)
         yield
 

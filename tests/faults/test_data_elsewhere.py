@@ -74,6 +74,10 @@ def as_a_map(forged):
         forged["heights"].attrs["units"] = "m"
 
 
+def here(function, path, arguments, **_):
+    return function(str(path), *arguments)
+
+
 def surface(tmp_path, way, secret):
     with h5py.File(tmp_path / "x.nc", "w") as forged:
         way(forged, secret)
@@ -111,7 +115,6 @@ def foreign(tmp_path, way, secret):
 @pytest.mark.parametrize("opened", [surface, result, modes, foreign])
 def test_data_that_lie_in_another_file_are_refused(tmp_path, secret, monkeypatch, opened, way, message):
     """In everything that opens HDF5; in this process, where nothing but the look at it stands guard."""
-    here = lambda function, path, arguments, **_: function(str(path), *arguments)  # noqa: E731
     monkeypatch.setattr(libraries, "sandboxed", here)
     with pytest.raises(InputError, match=f"{message}; allowed: a file that holds all of its data itself"):
         opened(tmp_path, way, secret)
@@ -160,8 +163,9 @@ def test_a_system_without_it_stays_as_it_was(monkeypatch, tmp_path):
 
 
 @pytest.mark.parametrize("target", ["/nowhere", "/round", "deeper/heights"])
-def test_a_soft_link_that_leads_nowhere_is_called_so(tmp_path, target):
+def test_a_soft_link_that_leads_nowhere_is_called_so(tmp_path, monkeypatch, target):
     """It damages nothing else; and one that leads to what is there is followed."""
+    monkeypatch.setattr(libraries, "sandboxed", here)
     file = tmp_path / "linked.nc"
     heights = 1e-6 * np.random.default_rng(0).normal(size=(30, 40))
     with h5py.File(file, "w") as opened:

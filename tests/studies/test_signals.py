@@ -288,10 +288,8 @@ def test_a_wav_file_with_the_highest_byte_first(tmp_path):
 
 @pytest.mark.parametrize("name", ["a.mat", "a", "a.dat"])
 @pytest.mark.parametrize("shape", [(-1, 1), (1, -1)])
-def test_a_record_of_matlab_is_read_whatever_it_is_called(tmp_path, monkeypatch, name, shape):
+def test_a_record_of_matlab_is_read_whatever_it_is_called(tmp_path, name, shape):
     """As it is handed round: a column beside the turns per minute; sizes of one are no signals."""
-    here = lambda function, path, arguments, **_: function(str(path), *arguments)  # noqa: E731
-    monkeypatch.setattr("asperity.surfaces.readers.matlab.sandboxed", here)
     stored = {"X097_DE_time": TIME.reshape(shape), "X097RPM": 1797.0}
     savemat(tmp_path / name, stored, appendmat=False)
     values, rate = read_signal(tmp_path / name, 12e3)
@@ -377,10 +375,6 @@ def test_a_signal_has_one_row_under_the_name_of_a_variant_where_the_case_as_it_i
     assert len({row["file"] for row in labels}) == 2
 
 
-def in_this_process(function, path, arguments, **_):
-    return function(str(path), *arguments)
-
-
 BESIDE = {
     "fs": 12e3, "Fs": np.array([[12_000]]), "sample_rate": np.array([12_000.0]), "sr": 12_000, "fs_kHz": 12.0,
     "SamplingFrequency": 12e3, "rate": 12e3, "dt": 1 / 12e3, "dt_ms": 1 / 12,
@@ -390,9 +384,8 @@ BESIDE = {
 
 @pytest.mark.parametrize("kind", ["npz", "mat", "struct", "hdf5"])
 @pytest.mark.parametrize("name", BESIDE)
-def test_what_stands_beside_a_signal_gives_its_sampling_rate(tmp_path, monkeypatch, kind, name):
+def test_what_stands_beside_a_signal_gives_its_sampling_rate(tmp_path, kind, name):
     """A number or times, by the names that people give them; a shaft's rate, and another speed, are none."""
-    monkeypatch.setattr("asperity.surfaces.readers.matlab.sandboxed", in_this_process)
     file, held = (
         tmp_path / "run.mat",
         {"gs": TIME[:, None], "load": 270.0, "frequency": 25.0, name: BESIDE[name]},

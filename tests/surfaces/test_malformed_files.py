@@ -16,6 +16,7 @@ from scipy.io import savemat
 from surface_files import npy, sdf_ascii, sdf_binary, x3p, x3p_xml, zipped
 
 from asperity.errors import InputError
+from asperity.sandbox import sandboxed
 from asperity.surfaces.readers import guards, read_surface
 
 STORED = np.add.outer(np.arange(3), 10 * np.arange(4))  # (y, x)
@@ -183,6 +184,7 @@ def test_file_without_permission(tmp_path):
 def test_a_library_that_fails_on_a_hostile_file(tmp_path, monkeypatch, code, seconds, message):
     (tmp_path / "SurfaceTopography.py").write_text(f"def open_topography(path):\n    {code}\n")
     monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr("asperity.surfaces.readers.libraries.sandboxed", sandboxed)
     monkeypatch.setattr("asperity.sandbox.SECONDS", seconds)
     with pytest.raises(InputError, match=rf"a\.plu: received {message}"):
         read_surface(write(tmp_path / "a.plu", b"content"))
@@ -194,6 +196,7 @@ def test_what_a_library_does_not_know_is_no_damaged_file(tmp_path, monkeypatch):
     code += "    raise CannotDetectFileFormat('tried: ' + 40 * 'a, ')\n"
     (tmp_path / "SurfaceTopography.py").write_text(code)
     monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr("asperity.surfaces.readers.libraries.sandboxed", sandboxed)
     with pytest.raises(InputError) as caught:
         read_surface(write(tmp_path / "a.plu", b"content"))
     assert "received a format that SurfaceTopography does not read; allowed: text, CSV" in str(caught.value)
@@ -216,9 +219,6 @@ def claims_in_matlab():
 ])  # fmt: skip
 def test_binary_files_that_hold_no_heights(tmp_path, monkeypatch, name, contents, message):
     monkeypatch.setitem(sys.modules, "SurfaceTopography", None)
-    here = lambda function, path, arguments, **_: function(str(path), *arguments)  # noqa: E731
-    if name == "a.dat":
-        monkeypatch.setattr("asperity.surfaces.readers.libraries.sandboxed", here)
     with pytest.raises(InputError, match=message):
         read_surface(write(tmp_path / name, contents() if callable(contents) else contents), **HINTS)
 

@@ -199,14 +199,6 @@ HOLED = {
 }
 
 
-@pytest.fixture(autouse=True)
-def _read_here(monkeypatch):
-    """What is read in a process of its own elsewhere is read in this one."""
-    at_once = lambda function, path, arguments, **_: function(str(path), *arguments)  # noqa: E731
-    for module in ("libraries", "matlab"):
-        monkeypatch.setattr(f"asperity.surfaces.readers.{module}.sandboxed", at_once)
-
-
 @pytest.fixture
 def write(tmp_path):
     def write(name, contents):
