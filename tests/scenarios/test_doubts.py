@@ -79,6 +79,10 @@ def test_a_device_on_which_nothing_was_ever_run_is_told(monkeypatch):
         ),
         (BALL | {"surface": BALL["surface"] | {"longest": "0.4 m"}}, "surface.longest = 400 mm: 0.07 m are"),
         (
+            BALL | {"contact": BALL["contact"] | {"sample_length": "80 mm", "samples": 1}},
+            "contact.sample_length = 80 mm: 0.07 m are rolled, and the window is 0.66 mm wide",
+        ),
+        (
             BALL
             | {
                 "laws": ["linear"],

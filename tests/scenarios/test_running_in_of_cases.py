@@ -25,7 +25,7 @@ BALL = {
     "surface": {"rms": "0.15 um", "longest": "0.3 mm", "shortest": "60 um"},
     "ball": {"load": "20 N"},
     "contact": {
-        "spacing": "15 um", "window": "0.66 mm", "samples": 2, "sample_length": "1.4 mm",
+        "spacing": "20 um", "window": "0.66 mm", "samples": 2, "sample_length": "1.4 mm",
         "hardness": "0.6 GPa",
     },
     "numerics": {"highest_frequency": "2 kHz"},

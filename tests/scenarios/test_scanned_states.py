@@ -73,7 +73,7 @@ def test_every_other_state_is_left_out_where_those_beside_it_tell_its_force():
 @pytest.mark.filterwarnings("ignore::asperity.errors.TruncatedContactWarning")  # of the filters, seldom
 def test_a_wheel_over_every_other_state_has_the_levels_of_one_over_all(own_cache, monkeypatch):
     textures = {"surface": TEXTURES["wheel-on-rail"], "contact": FINE["wheel-on-rail"]}
-    case = changed("wheel-on-rail", laws=["table"], duration="0.1 s", **textures)
+    case = changed("wheel-on-rail", laws=["table"], **textures)
     few = compute(prepare_case(case), lambda *_: None)
     assert few.shape.cells != few.cells_of_heights == "covered"
     monkeypatch.setattr(laws, "states_apart", lambda approaches, _: list(range(len(approaches))))
