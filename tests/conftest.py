@@ -81,7 +81,10 @@ def pytest_collection_finish():
 
 
 def pytest_unconfigure():
+    """Seek garbage once more: pytest would do so five times over, in all that tests and modules left."""
     _cache.cleanup()
+    gc.collect()
+    gc.freeze()
 
 
 OPENED_APART = ("results", "structures.modal_files", "studies.kept_signals")

@@ -125,7 +125,7 @@ def test_wear_grows_with_coefficient_and_speed_and_falls_with_hardness():
 @pytest.mark.parametrize(("bearing", "load"), [(B6205, (300.0, 0.0)), (B7205, (200.0, 400.0))])
 def test_what_sticks_does_not_wear(bearing, load):
     """Volume over k/H is the heat over the coefficient of friction; the most there is where all slips."""
-    loaded = bearing.loaded(*load, speed=SPEED, cage_angles=FOUR)
+    loaded = bearing.loaded(*load, speed=SPEED, cage_angles=FOUR[:2])
     turning = bearing.kinematics(SPEED, contact_angle=loaded.contact_angle)
     most = raceway_wear(loaded, turning, COEFFICIENT)
     found = raceway_wear(loaded, turning, COEFFICIENT, Friction(0.1))

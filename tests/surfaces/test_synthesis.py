@@ -1,5 +1,7 @@
 """Textures that are made: continued records, self-affine surfaces, likenesses of maps, homogeneity."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
@@ -114,17 +116,24 @@ def parent_spectrum(size=1200, lengths=(10 * UM, 4 * UM)):
     return power / power.mean()
 
 
+@cache
 def parent_correlation():
     """Correlation of the lognormal surface at all lags of the grid."""
     normal = fft.ifft2(parent_spectrum()).real
     return (np.exp(LOGNORMAL**2 * normal) - 1) / (np.exp(LOGNORMAL**2) - 1)
 
 
-def parent_maps(count, size=200):
-    """Pieces of one lognormal surface."""
+@cache
+def parent():
+    """Heights of a lognormal surface, m."""
     noise = np.random.default_rng(99).standard_normal((1200, 1200))
     normal = fft.ifft2(fft.fft2(noise) * np.sqrt(parent_spectrum())).real
-    heights = (np.exp(LOGNORMAL * normal) - np.exp(LOGNORMAL**2 / 2)) * UM
+    return (np.exp(LOGNORMAL * normal) - np.exp(LOGNORMAL**2 / 2)) * UM
+
+
+def parent_maps(count, size=200):
+    """Pieces of it."""
+    heights = parent()
     corners = [(size * i, size * j) for i in range(6) for j in range(6)][:count]
     return [HeightMap(heights[i : i + size, j : j + size], (UM, UM), "sheet.x3p") for i, j in corners]
 
