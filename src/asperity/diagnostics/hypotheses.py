@@ -237,13 +237,14 @@ class BearingRecord:
         """
         views = (self.spectrum, *self.envelopes)
         total = np.zeros(speed.size)
-        own = [np.full((speed.size, 1), each or np.nan) for each in (tone, deepest)]
+        own = [np.full((speed.size, 1), each) for each in (tone, deepest) if each]
         for view, count in zip(views, TURNS, strict=True):
             order = np.arange(1, 2 * count + 1)
             lines = speed[:, None] * (order[order % but > 0] if but else order)[:count]
-            total += _less_largest(self._beside(view, lines, *own[: 2 * (view is not self.spectrum)]))
-        once = np.abs(speed - deepest)[:, None] <= SPREAD * self.white.step  # blows of the shaft itself
-        own[1] = np.where(once, np.nan, own[1])
+            total += _less_largest(self._beside(view, lines, *(own if view is not self.spectrum else ())))
+        if deepest:
+            once = np.abs(speed - deepest)[:, None] <= SPREAD * self.white.step  # blows of the shaft itself
+            own[-1] = np.where(once, np.nan, own[-1])
         for view in self.envelopes if tone and modulation else ():
             sides = np.array([n * tone + side * modulation * speed for n in BESIDE for side in (-1.0, 1.0)]).T
             total += _less_largest(self._beside(view, sides, *own))
@@ -350,5 +351,5 @@ def deepest_comb(combs: Iterable[tuple[float, float]]) -> float:
 
 def _less_largest(terms: Array) -> Array:
     """Sums (n,) of values (n, k) without the largest of each row; what is not known counts nothing."""
-    known: Array = np.sort(np.where(np.isnan(terms), 0.0, terms), axis=-1)
-    return known[:, :-1].sum(axis=-1)
+    known = np.where(np.isnan(terms), 0.0, terms)
+    return np.asarray(known.sum(axis=-1) - known.max(axis=-1))
