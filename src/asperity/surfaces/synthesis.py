@@ -266,19 +266,20 @@ class AffineRange:
         tiling = self.across
         count, beside = self.tile.most
         size = self.surface.rms * np.sqrt(self.power / self.surface.mean_square)
-        turns = 2.0 * np.pi / tiling.length * np.arange(-beside, beside + 1)
+        turns = 2.0 * np.pi / tiling.length * np.arange(beside + 1)
         found = np.zeros((count + 1, len(across)), np.complex128)
         for side in tiling.touching(across.min(), across.max()):
             lines = tiling.held(side, across)
             noise = deviates(self.surface.seed, (len(size),), self.number, side, tile)[members.rank] * size
-            basis = np.exp(1j * turns[:, None] * tiling.within(side, across[lines]))
-            basis *= tiling.weight(side, across[lines])
-            step = max(1, TOGETHER // len(turns))
+            forth = np.exp(1j * turns[:, None] * tiling.within(side, across[lines]))
+            forth *= tiling.weight(side, across[lines])
+            basis = np.concatenate([forth[:0:-1].conj(), forth])
+            step = max(1, TOGETHER // len(basis))
             for first in range(0, count + 1, step):
                 rows = found[first : first + step]
                 there = slice(*np.searchsorted(members.along, (first, first + step)).tolist())
                 columns = members.across[there] + beside
-                low = columns.min(initial=len(turns))
+                low = columns.min(initial=len(basis))
                 high = columns.max(initial=0) + 1
                 box = np.zeros((len(rows), max(high - low, 0)), np.complex128)
                 box[members.along[there] - first, columns - low] = noise[there]
