@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from asperity import HalfSpace, HeightMap, Hertz, Profile
 from asperity.contact.hertz import in_groove
 from asperity.errors import Outcome, UnconvergedWarning
+from asperity.surfaces.edges import Edges
 from refusals import refusals
 
 MODULUS = 1e11
@@ -101,6 +102,7 @@ def test_a_start_changes_nothing_but_the_work_and_is_left_as_it_is():
 def test_what_does_not_converge_says_so(monkeypatch):
     gap, half_space = rough()
     contact = half_space.solve(gap, approach=1e-6)
+    monkeypatch.setattr("asperity.kernels.batched.FEW", 0)
     for module in ("elastic_grid", "pressed"):
         monkeypatch.setattr(f"asperity.contact.{module}.MAX_ITERATIONS", 2)
     with pytest.warns(UnconvergedWarning, match=r"contact at approach 1·10⁻⁶ m .*iteration limit"):
@@ -109,6 +111,26 @@ def test_what_does_not_converge_says_so(monkeypatch):
     assert found.residual > 1e-9
     with pytest.warns(UnconvergedWarning, match=r"tangent stiffness .*iteration limit"):
         half_space.tangent_stiffness(contact.pressure)
+
+
+@pytest.mark.parametrize("cells", ["whole", "edges", "covered"])
+def test_few_cells_are_solved_at_once_as_by_iterations(cells, monkeypatch):
+    """What no cell says of its own: that it is soft at an edge, or that the gap at a rim falls beside it."""
+    gap, _ = rough()
+    edges = None
+    seen = "covered" if cells == "covered" else "whole"
+    half_space = HalfSpace(gap.shape, (8e-5, 5e-5), MODULUS, cells=seen)
+    if cells == "edges":
+        distance = np.repeat(1e-4 - 8e-5 * np.arange(-12.0, 12.0)[:, None], gap.shape[1], axis=1)
+        edges = Edges(distance, np.ones(gap.shape), np.full(gap.shape, 1e-5), half_space.spacing)
+    contact = half_space.solve(gap, approach=1e-6, edges=edges)
+    found = []
+    for few in (0, 1000):
+        for module in ("kernels.batched", "contact.elastic_grid"):
+            monkeypatch.setattr(f"asperity.{module}.FEW", few)
+        found.append(half_space.tangent_stiffness(contact.pressure, edges=edges))
+    assert found[1] == pytest.approx(found[0], rel=1e-8)
+    assert found[0] > 0.0
 
 
 def test_a_tolerance_beyond_rounding_is_reported():

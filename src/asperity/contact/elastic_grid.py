@@ -11,7 +11,14 @@ from asperity.contact.edges import Softness, softness_at
 from asperity.contact.periodic_influence import BOUNDARIES, lifted_table, stiffness_of_lifted
 from asperity.errors import Outcome, UnconvergedWarning
 from asperity.kernels import fourier, projected_cg, rims
-from asperity.kernels.batched import apply_stencil, convolve_padded, padded_spectrum, unit_indentation
+from asperity.kernels.batched import (
+    FEW,
+    apply_stencil,
+    between_cells,
+    convolve_padded,
+    padded_spectrum,
+    unit_indentation,
+)
 from asperity.kernels.influence import Influence, influence, influence_table, means_table
 from asperity.surfaces.edges import Edges
 from asperity.units import written
@@ -142,6 +149,8 @@ class ElasticGrid:
 
         own, along, across = self._rims_of(pressure)[0]
         inside = np.flatnonzero(free)
+        if len(inside) <= FEW:
+            return self._stiffness_of_few(free, own, along, across)
         softer = 1.0 / np.sqrt(1.0 + rims.SHARED * np.maximum(-own, 0.0) * self.influence.taps[0])
         taps = tuple(self.influence.taps.tolist())
         spectrum = padded_spectrum(self.influence.table, *self.shape)
@@ -172,6 +181,18 @@ class ElasticGrid:
         if missed:
             warn_unconverged("tangent stiffness", Outcome.ITERATION_LIMIT)
         return float(rise.sum()) * self.cell_area
+
+    def _stiffness_of_few(self, free: Flags, own: Array, along: Array, across: Array) -> float:
+        """The same by its matrix, of few cells, and derivatives of their gap at rims (nx, ny), m/Pa."""
+        matrix = between_cells(self.influence.table, np.nonzero(free)) - np.diag(own[free])
+        number = np.full([n + 2 for n in free.shape], -1)
+        number[1:-1, 1:-1][free] = np.arange(len(matrix))
+        beside = (number[2:, 1:-1], along), (number[:-2, 1:-1], -along)
+        before = (number[1:-1, 2:], across), (number[1:-1, :-2], -across)
+        for neighbour, slope in (*beside, *before):
+            met = np.flatnonzero(neighbour[free] >= 0)
+            matrix[met, neighbour[free][met]] -= slope[free][met]
+        return float(np.linalg.solve(matrix, np.ones(len(matrix))).sum()) * self.cell_area
 
     @property
     def pressure_cap(self) -> float:

@@ -18,6 +18,8 @@ Array = Any
 
 SMALLEST = 16
 """Batches do not shrink below this: a smaller transform takes no less time on a device."""
+FEW = 192
+"""Cells up to which equations are solved at once: iterations take longer."""
 STUCK = 0.9
 """Share of a residual above which its next value says that rounding hides what is left."""
 
@@ -46,6 +48,15 @@ def convolve_padded(fields: Array, spectrum: Array, xp: Any) -> Array:
     return xp.ascontiguousarray(xp.fft.irfft2(full, s=padded)[:, :nx, :ny])
 
 
+def between_cells(table: NDArray, cells: tuple[NDArray, NDArray]) -> NDArray:
+    """Displacements (n, n) of cells at rows and lines (n,) by pressures on each of them, m/Pa.
+
+    From an influence table at non-negative separations.
+    """
+    rows, lines = (np.abs(np.subtract.outer(each, each)) for each in cells)
+    return np.asarray(table[rows, lines])
+
+
 def unit_indentation(
     table: NDArray,
     taps: tuple[float, ...],
@@ -56,11 +67,18 @@ def unit_indentation(
 ) -> tuple[NDArray, bool]:
     """Find the pressure that displaces a set of cells by one: K p = 1 on the set, p = 0 elsewhere.
 
-    Preconditioned conjugate gradients. Influence table (≥ nx, ≥ ny), m/Pa, taps of `inverse_stencil`, Pa/m,
-    the set (nx, ny), and the softness of cells at edges, m/Pa, which sink by that besides. Returns the
-    pressure (nx, ny) in Pa per m of indentation, whose integral is the tangent stiffness, and whether the
-    residual, relative to one, fell below `rtol`.
+    Preconditioned conjugate gradients, where cells are more than `FEW`. Influence table (≥ nx, ≥ ny), m/Pa,
+    taps of `inverse_stencil`, Pa/m, the set (nx, ny), and the softness of cells at edges, m/Pa, which sink by
+    that besides. Returns the pressure (nx, ny) in Pa per m of indentation, whose integral is the tangent
+    stiffness, and whether the residual, relative to one, fell below `rtol`.
     """
+    if np.count_nonzero(inside) <= FEW:
+        matrix = between_cells(table, np.nonzero(inside))
+        if soft is not None:
+            matrix += np.diag(soft[inside])
+        pressure = np.zeros(inside.shape)
+        pressure[inside] = np.linalg.solve(matrix, np.ones(len(matrix)))
+        return pressure, True
     spectrum = padded_spectrum(table, *inside.shape)
     rho = 1.0
     pressure = np.zeros(inside.shape)
