@@ -6,6 +6,7 @@ from numpy.testing import assert_allclose
 
 from asperity.errors import InputError
 from asperity.reduction.texture import LongConvolution, StateTexture, areal_texture, punch_weights
+from asperity.surfaces.strip import Rows
 from refusals import refusals
 
 
@@ -66,6 +67,17 @@ def test_unfiltered_texture_has_one_state_and_is_known_on_its_path_alone():
     for beyond in (9.9, 11.6):
         with pytest.raises(InputError, match=r"10 to 11.5, where the state texture is known.*longer texture"):
             texture.at([10.0, beyond])
+
+
+def test_of_what_is_alike_all_across_one_line_is_averaged_and_no_other():
+    """As strips are, of which nobody knows whether they are."""
+    random = np.random.default_rng(1)
+    alike = np.repeat(random.normal(size=(300, 1)), 31, axis=1)
+    begins_alike = np.vstack([alike[:1], random.normal(size=(299, 31))])
+    given_ = (2e-6, 3e-6), [0.0, 1e-6], [(60e-6, 40e-6), (30e-6, 20e-6)]
+    for heights in (alike, begins_alike, np.zeros((300, 31))):
+        found, expected = (areal_texture(each, *given_).heights for each in (heights, Rows(heights)))
+        assert_allclose(found, expected, atol=1e-13)
 
 
 def strip(rows, columns, *axes):

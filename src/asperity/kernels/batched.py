@@ -5,6 +5,7 @@ is compiled and nothing leaves the device but a few counts. The iteration of eac
 `projected_cg.solve` at a given approach.
 """
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -48,7 +49,7 @@ def convolve_padded(fields: Array, spectrum: Array, xp: Any) -> Array:
     return xp.ascontiguousarray(xp.fft.irfft2(full, s=padded)[:, :nx, :ny])
 
 
-def between_cells(table: NDArray, cells: tuple[NDArray, NDArray]) -> NDArray:
+def between_cells(table: NDArray, cells: Sequence[NDArray]) -> NDArray:
     """Displacements (n, n) of cells at rows and lines (n,) by pressures on each of them, m/Pa.
 
     From an influence table at non-negative separations.

@@ -167,7 +167,8 @@ def areal_texture(
     Heights (n, ny), m, peaks positive; the contact runs along the middle of the strip, so ny is odd, and the
     strip at least as wide as the widest patch. Approaches (k,), m, and semi-axes (k, 2) (a_x, a_y) of the
     nominal patch of each state, m; `start` is the position of the first row, m. The result is positive away
-    from the contact; its ends, one semi-axis long, see zeros beyond the strip.
+    from the contact; its ends, one semi-axis long, see zeros beyond the strip. Of heights that are alike all
+    across one line is averaged.
     """
     axes = np.atleast_2d(np.asarray(semi_axes, dtype=np.float64))
     strip = Rows(heights) if isinstance(heights, np.ndarray) else heights
@@ -178,8 +179,13 @@ def areal_texture(
     received = f"{rounded(width)} m"
     remedy = "Enlarge contact.window."
     require(widest <= width, "width of the texture strip", received, allowed, remedy)
-    middle = ny // 2
-    halves = [_half(punch_weights(spacing, (float(a), float(b))), middle) for a, b in axes]
+    if isinstance(heights, np.ndarray) and (heights == heights[:, :1]).all():
+        strip = Rows(heights[:, :1])
+        if not heights.any():
+            return StateTexture(np.zeros((len(axes), n)), np.asarray(approaches, float), start, spacing[0])
+    middle = strip.shape[1] // 2
+    under = [punch_weights(spacing, (float(a), float(b))) for a, b in axes]
+    halves = [_half(each if middle else each.sum(axis=1, keepdims=True), middle) for each in under]
     reach = max(half.shape[0] // 2 for half in halves)
     weights = np.zeros((len(halves), max(half.shape[1] for half in halves), 2 * reach + 1))
     for row, half in zip(weights, halves, strict=True):

@@ -262,9 +262,8 @@ class OnRaceway:
         """Heights (rows, lines), m, averaged under patches of half axes (k, 2), m, with `over_faults`."""
         patch = np.minimum(np.atleast_2d(axes), 0.5 * heights.shape[1] * self.surface.spacing[1])
         reach = math.ceil(patch[:, 0].max() / self.surface.spacing[0]) + 1
-        rows = Rows(self._around(heights, reach))
         states = np.arange(len(patch), dtype=float)
-        under = areal_texture(rows, self.surface.spacing, states, patch).heights
+        under = areal_texture(self._around(heights, reach), self.surface.spacing, states, patch).heights
         return self.over_faults - under[:, reach:-reach]
 
     @cached_property
@@ -288,7 +287,9 @@ class OnRaceway:
     @cached_property
     def touches(self) -> Array:
         """Approach at first touch at the positions, from the planes, m."""
-        return scan.first_touch(Rows(self.scanned), self.shape.body, self.stride) + self.planes
+        if not self.scanned.any():
+            return self.planes + float(self.shape.body.min())
+        return scan.first_touch(self.scanned, self.shape.body, self.stride) + self.planes
 
     @cached_property
     def approaches(self) -> Array:
@@ -297,10 +298,9 @@ class OnRaceway:
         sound = np.flatnonzero(~self._met(self.surface.damaged))
         extreme = [each(values) for each in (np.argmin, np.argmax) for values in (self.touches, felt)]
         few = SAMPLES if self.surface.heights.any() else 1
-        window = len(self.shape.body)
         even = sound[:: max(1, math.ceil(len(sound) / few))]
         chosen = [(self.positions[at], self.planes[at]) for at in np.union1d(extreme, even).astype(int)]
-        places = [self.scanned[row : row + window] - plane for row, plane in chosen]
+        places = [self.scanned[row : row + len(self.shape.body)] - plane for row, plane in chosen]
         return reducing.chosen_states(places, self.shape, self.space)
 
     @property
