@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.kernels.options import CALLED, LOOP, compiled
+from asperity.kernels.options import CALLED, INNER, LOOP, UNCHECKED, compiled
 
 BLOCK = 512
 """Points whose coefficients are found at once."""
@@ -162,6 +162,64 @@ def evaluate_pieces(coefficients, breaks, places, values, slopes):  # type: igno
                 values[i, j] = values[i, j] * t + coefficients[piece, p, j]
 
 
+@compiled(**INNER)
+def _end_slope(outer, inner, secant, inner_secant):  # type: ignore[no-untyped-def]
+    """Slope at an end by the three-point formula, held between half and twice the end secant."""
+    estimate = ((2.0 * outer + inner) * secant - outer * inner_secant) / (outer + inner)
+    return np.minimum(np.maximum(estimate, 0.5 * secant), 2.0 * secant)
+
+
+@compiled(**INNER)
+def slopes_of_row(knots, row, slopes):  # type: ignore[no-untyped-def]
+    """Write the slopes of `monotone_slopes` at the knots (k,) of a row (k,)."""
+    last = len(knots) - 1
+    width = knots[1] - knots[0]
+    secant = (row[1] - row[0]) / width
+    slopes[0] = slopes[last] = secant
+    for j in range(1, last):
+        wide = knots[j + 1] - knots[j]
+        steep = (row[j + 1] - row[j]) / wide
+        if j == 1:
+            slopes[0] = _end_slope(width, wide, secant, steep)
+        if j == last - 1:
+            slopes[last] = _end_slope(wide, width, steep, secant)
+        slopes[j] = 0.0
+        if secant * steep > 0.0:
+            before = width + 2.0 * wide
+            behind = 2.0 * width + wide
+            slopes[j] = (before + behind) * secant * steep / (before * steep + behind * secant)
+        width = wide
+        secant = steep
+
+
+@compiled(**LOOP, **UNCHECKED)
+def write_slopes(knots, rows, slopes):  # type: ignore[no-untyped-def]
+    """Write the slopes of `monotone_slopes` of rows (n, k)."""
+    for i in range(rows.shape[0]):
+        slopes_of_row(knots, rows[i], slopes[i])
+
+
+@compiled(**LOOP, **UNCHECKED)
+def lay_roots(states, touches, margins, root, slopes):  # type: ignore[no-untyped-def]
+    """Lay out rows (n, s) of g = F^(2/3) in states (s,), and their slopes, from first touches (n,) on.
+
+    Before the touch, and by margins (s,) after it, g is replaced by the line through the touch and the first
+    state that lies beyond.
+    """
+    count = len(states)
+    for i in range(root.shape[0]):
+        row = root[i]
+        touch = touches[i]
+        rise = 0.0
+        for j in range(count - 1, -1, -1):
+            if states[j] - touch > margins[j]:
+                rise = row[j] / (states[j] - touch)
+        for j in range(count):
+            if not states[j] - touch > margins[j]:
+                row[j] = rise * (states[j] - touch)
+        slopes_of_row(states, row, slopes[i])
+
+
 def monotone_slopes(knots: NDArray, values: NDArray) -> NDArray:
     """Slopes at the knots (k,), k ≥ 2, that keep piecewise cubics through rows (..., k) monotone.
 
@@ -170,15 +228,10 @@ def monotone_slopes(knots: NDArray, values: NDArray) -> NDArray:
     formula, held between half and twice the end secant, so that a continuation beyond the ends goes on
     rising.
     """
-    width = np.diff(knots)
-    secant = np.diff(values, axis=-1) / width
-    slopes = np.empty(np.shape(values))
-    if len(knots) == 2:
-        slopes[...] = secant
-        return slopes
-    slopes[..., 1:-1] = _inner_slopes(width, secant)
-    slopes[..., 0] = _end_slope(width[0], width[1], secant[..., 0], secant[..., 1])
-    slopes[..., -1] = _end_slope(width[-1], width[-2], secant[..., -1], secant[..., -2])
+    rows = np.ascontiguousarray(values, dtype=float)
+    slopes = np.empty_like(rows)
+    count = len(knots)
+    write_slopes(np.ascontiguousarray(knots, dtype=float), rows.reshape(-1, count), slopes.reshape(-1, count))
     return slopes
 
 
@@ -190,10 +243,10 @@ def shape_preserving(knots: NDArray, values: NDArray, places: NDArray) -> NDArra
     where the rows turn (C. Moler, Numerical Computing with MATLAB (2004), Sec. 3.6).
     """
     width = np.diff(knots)
-    secant = np.diff(values, axis=-1) / np.diff(knots)
-    first = _turning_end_slope(width[0], width[1], secant[..., 0], secant[..., 1])
-    last = _turning_end_slope(width[-1], width[-2], secant[..., -1], secant[..., -2])
-    slopes = np.concatenate([first[..., None], _inner_slopes(width, secant), last[..., None]], axis=-1)
+    secant = np.diff(values, axis=-1) / width
+    slopes = monotone_slopes(knots, values)
+    slopes[..., 0] = _turning_end_slope(width[0], width[1], secant[..., 0], secant[..., 1])
+    slopes[..., -1] = _turning_end_slope(width[-1], width[-2], secant[..., -1], secant[..., -2])
     piece = np.clip(np.searchsorted(knots, places, side="right") - 1, 0, len(knots) - 2)
     s = places - knots[piece]
     h = width[piece]
@@ -227,27 +280,10 @@ def continued_to_touch(knots: NDArray, root: NDArray) -> NDArray:
     outer = knots[np.minimum(after, last)] - knots[first]
     inner = knots[np.minimum(second, last)] - knots[np.minimum(after, last)]
     # where there is no interval behind, the straight line is taken: only the division must not fail
-    curved = _end_slope(outer, np.maximum(inner, 1e-300), steepness, secant(after, second))
+    curved = _end_slope.py_func(outer, np.maximum(inner, 1e-300), steepness, secant(after, second))
     slope = np.maximum(np.where(second <= last, curved, steepness), secant(before, first))
     line = root[rows, first][:, None] + slope[:, None] * (knots - knots[first][:, None])
     return np.where(np.arange(len(knots)) < first[:, None], np.minimum(line, root), root)
-
-
-def _inner_slopes(width: NDArray, secant: NDArray) -> NDArray:
-    left = secant[..., :-1]
-    right = secant[..., 1:]
-    weight_left = width[:-1] + 2.0 * width[1:]
-    weight_right = 2.0 * width[:-1] + width[1:]
-    goes_on = np.sign(left) * np.sign(right) > 0.0
-    safe_left = np.where(goes_on, left, 1.0)
-    safe_right = np.where(goes_on, right, 1.0)
-    mean = (weight_left + weight_right) / (weight_left / safe_left + weight_right / safe_right)
-    return np.where(goes_on, mean, 0.0)
-
-
-def _end_slope(outer: NDArray, inner: NDArray, secant: NDArray, inner_secant: NDArray) -> NDArray:
-    estimate = ((2.0 * outer + inner) * secant - outer * inner_secant) / (outer + inner)
-    return np.clip(estimate, 0.5 * secant, 2.0 * secant)
 
 
 def cubic_coefficients(knots: NDArray, values: NDArray, slopes: NDArray) -> NDArray:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from asperity.arguments import Array, ArrayLike, as_row
-from asperity.kernels.curves import monotone_slopes
+from asperity.kernels.curves import lay_roots
 from asperity.kernels.pointforce import DRY, SECANT, SHIFTED, TABLE, Prepared, evaluate_all
 from asperity.laws.spec import Law
 from asperity.reduction.stiffness import PIECE, ForceCurve, ForceTable
@@ -29,7 +29,9 @@ def on_curve(
     at = as_row(positions)
     planes = _plane_at(plane, at)
     states = np.zeros(1) if texture is None else np.ascontiguousarray(texture.approaches, dtype=float)
-    values = (np.zeros((at.size, 1)) if texture is None else texture.at(at)) - planes[:, None]
+    values = np.zeros((at.size, 1)) if texture is None else texture.at(at)
+    if plane is not None:
+        values -= planes[:, None]
     followed = states, values, np.zeros((0, len(states))), np.zeros(0)
     force = curve.knots, curve.coefficients, float(curve.exponent), curve.bilateral
     damper = float(damping), damped_in_flight
@@ -50,42 +52,22 @@ def on_table(
 ) -> Prepared:
     """Lay out a law that looks the force up in a table, at positions (n,) of the contact, m.
 
-    g = F^(2/3), negative before first touch, and its monotone slopes at every position. Damping in N s/m; the
+    g = F^(2/3), straight and negative before first touch, and its monotone slopes. Damping in N s/m; the
     table's approaches count from the plane, m, by default the mean plane.
     """
     at = as_row(positions)
     states = np.ascontiguousarray(table.approaches, dtype=float)
     root, slopes = np.empty((2, at.size, len(states)))
-    touches = np.empty(at.size)
+    touches = table.touch_at(at)
+    margins = 0.2 * np.gradient(states)
     for first in range(0, at.size, PIECE):
         piece = slice(first, first + PIECE)
-        root[piece], slopes[piece], touches[piece] = _laid_out(table, at[piece])
+        np.square(np.cbrt(table.at(at[piece])), out=root[piece])
+    lay_roots(states, touches, margins, root, slopes)
     no_curve = np.zeros(2), np.zeros((1, 4)), 1.5, False, 0.0
     damper = float(damping), False
     planes = _plane_at(plane, at)
     return Prepared(TABLE, planes, states, root, slopes, touches, *no_curve, *damper, float(states[-1]), DRY)
-
-
-def _laid_out(table: ForceTable, at: Array) -> tuple[Array, Array, Array]:
-    """g = F^(2/3), its slopes and the first touch at some positions.
-
-    As all of it is compared state by state, the positions of a state lie beside each other in memory.
-    """
-    root = np.cbrt(table.at(at)) ** 2
-    touches = table.touch_at(at)
-    root = _straight_to_touch(table.approaches, root, touches)
-    return root, monotone_slopes(table.approaches, root), touches
-
-
-def _straight_to_touch(states: Array, root: Array, touches: Array) -> Array:
-    """Replace g before first touch, and a little after, by the line through the touch and the next state."""
-    apart = np.subtract.outer(states, touches).T
-    beyond = apart > 0.2 * np.gradient(states)
-    first = np.argmax(beyond, axis=1)
-    rows = np.arange(len(root))
-    rise = root[rows, first] / np.maximum(states[first] - touches, np.finfo(float).tiny)
-    line = np.where(beyond[rows, first], rise, 0.0)[:, None] * apart
-    return np.where(beyond, root, line)
 
 
 def force(law: Law, positions: ArrayLike, approach: ArrayLike) -> Array:

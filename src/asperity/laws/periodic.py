@@ -38,8 +38,15 @@ class Periodic(spec.OnLaw):
         """
         at = np.asarray(positions, dtype=float)
         if self.ball is None:
-            return self.law.prepare(np.mod(at, self.circumference))
+            return self.law.prepare(_within(at, self.circumference))
         assert isinstance(self.law, spec.PairedLaw)
-        on_path = np.mod(at[:, 0], self.circumference)
-        on_ball = np.mod(self.radius * at[:, 1], 2.0 * np.pi * abs(self.radius))
+        on_path = _within(at[:, 0], self.circumference)
+        on_ball = _within(self.radius * at[:, 1], 2.0 * np.pi * abs(self.radius))
         return self.law.prepare_pair(on_path, self.ball, on_ball)
+
+
+def _within(positions: spec.Array, turn: float) -> spec.Array:
+    """Positions within one turn, m; those that all are, as mostly, are left as they are."""
+    if positions.min() >= 0.0 and positions.max() < turn:
+        return positions
+    return np.mod(positions, turn)

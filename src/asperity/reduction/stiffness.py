@@ -320,7 +320,7 @@ class ForceTable:
         """Forces (n, s), N, at positions (n,), m, by cubic splines: not negative, not falling with states."""
         count = self.forces.shape[1]
         index = grid_index("force table", count, self.start, self.spacing, positions)
-        result = np.empty((index.size, len(self.approaches)), order="F")  # states are compared as a whole
+        result = np.empty((index.size, len(self.approaches)))
         for i in range(0, index.size, PIECE):
             piece = index[i : i + PIECE]
             first = max(0, int(piece.min()) - OVERLAP)

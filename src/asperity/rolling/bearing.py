@@ -239,6 +239,7 @@ class _Turning:
         self._rate = rate = TURN * pure.cage * (1.0 - slips) * self._share(range(self.total + 1))
         done = np.concatenate([[0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1])) * self.time_step])
         self._cage = done - done[round(self.settling / self.time_step)]
+        self._angles: dict[float, Array] = {}
         self._spin = TURN * pure.spin
         mass = self.bearing.ball_mass
         middle = 0.5 * self.bearing.pitch_diameter
@@ -270,13 +271,20 @@ class _Turning:
         """Angle of the first ball."""
         return at_steps(self._cage, steps)
 
+    def _first_ball(self, turned: float) -> Array:
+        """Angle of the first ball at all steps, in a frame that turns by as much in a second, rad."""
+        if turned not in self._angles:
+            self._angles[turned] = self._cage - turned * self._time(range(self.total + 1))
+        return self._angles[turned]
+
     def azimuth(self, ball: int, ring: int | None = None) -> Trajectory:
         """Angle of a ball, in the frame of a ring that turns if there is one."""
         ahead = TURN * ball / self.bearing.balls
         turned = 0.0 if ring is None else TURN * self.turns[ring]
+        first = self._first_ball(turned)
 
         def places(steps: range) -> Array:
-            return self.cage(steps) + ahead - turned * self._time(steps)
+            return at_steps(first, steps) + ahead
 
         def rates(steps: range) -> Array:
             return at_steps(self._rate, steps) - turned * self._share(steps)
@@ -288,7 +296,12 @@ class _Turning:
         """Position of a ball along a raceway, m, from 0 to its circumference."""
         radius = self.bearing.raceway_radii[ring]
         azimuth = self.azimuth(ball, ring).places
-        return lambda steps: radius * (azimuth(steps) % TURN)
+
+        def along(steps: range) -> Array:
+            turns = azimuth(steps) / TURN
+            return radius * TURN * (turns - np.floor(turns))
+
+        return along
 
     def spot(self, ring: int) -> Values:
         """Angle of the spot of a ball that touches a ring; the spots are opposite."""

@@ -203,3 +203,11 @@ def stacked(pieces: Sequence[Any]) -> tuple[Prepared, Integers]:
         name: padded([np.asarray(getattr(law, name)) for law in pieces]) for name in Prepared._fields
     }
     return Prepared(**arrays), np.array(sizes)
+
+
+def laid_over(stack: Prepared, pieces: Sequence[Prepared]) -> None:
+    """Lay later pieces of the same laws, no longer ones, into what `stacked` has made of the first."""
+    for name in ALONG:
+        for room, law in zip(getattr(stack, name), pieces, strict=True):
+            part = getattr(law, name)
+            room[tuple(map(slice, part.shape))] = part

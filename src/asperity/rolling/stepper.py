@@ -12,7 +12,7 @@ from asperity.kernels import stepping
 from asperity.kernels.pointforce import DRY, Prepared, evaluate
 from asperity.laws.spec import SettlingLaw, SteppedLaw, settles
 from asperity.progress import Progress
-from asperity.rolling.course import Course, in_contact, stacked, steps_beyond
+from asperity.rolling.course import Course, in_contact, laid_over, stacked, steps_beyond
 from asperity.store import Checkpoint
 from asperity.written_numbers import rounded
 
@@ -161,7 +161,9 @@ class Stepper:
         if self.shapes.shape[2]:
             self.course.write_shapes(steps, self.shapes[:count], self.rates[:count])
         self.pieces = self.course.pieces(steps)
-        if not self.stepped:  # one kernel serves any number and mix
+        if self.laid is not None:
+            laid_over(self.laid[0], self.pieces)
+        elif not self.stepped:  # one kernel serves any number and mix
             self.laid = stacked(self.pieces)
 
     def _solve(
