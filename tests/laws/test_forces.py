@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 
 from asperity.kernels.pointforce import evaluate, evaluate_all, with_damping
 from asperity.laws import Areal, HertzLaw, Linear, Printed, Shifted, Table, names
-from asperity.laws.layout import _straight_to_touch, force, on_curve
+from asperity.laws.layout import force, on_curve, on_table
 from asperity.reduction.stiffness import ForceCurve, ForceTable
 from asperity.reduction.texture import StateTexture
 from asperity.rolling.rest import at_rest
@@ -138,8 +138,10 @@ def test_a_body_at_rest_is_where_the_law_carries_its_load(load):
 @pytest.mark.parametrize(("beyond", "replaced"), [(0.15, True), (0.25, False)])
 def test_the_state_just_beyond_a_first_touch_lies_on_the_line_to_the_next(beyond, replaced):
     """Less than a fifth of a state's distance beyond, its force is rounding of the scan."""
-    root = np.array([[0.0, 0.0, 0.7, 3.0, 4.0, 5.0]])
-    found = _straight_to_touch(np.arange(6.0), root, np.array([2.0 - beyond]))
+    root = np.array([0.0, 0.0, 0.7, 3.0, 4.0, 5.0])
+    even = np.ones(9)
+    table = ForceTable(np.outer(root**1.5, even), np.arange(6.0), 0.0, SPACING, (2.0 - beyond) * even)
+    found = on_table(table, [3.3 * SPACING], damping=0.0, plane=None).values[0]
     line = 3.0 / (1.0 + beyond) * beyond
-    assert found[0, 2] == pytest.approx(line if replaced else 0.7)
-    np.testing.assert_array_equal(found[0, 3:], root[0, 3:])
+    assert found[2] == pytest.approx(line if replaced else 0.7)
+    assert found[3:] == pytest.approx(root[3:])
