@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from asperity.arguments import Array
 from asperity.laws import spec
 
 
@@ -45,7 +46,7 @@ class Periodic(spec.OnLaw):
         return self.law.prepare_pair(on_path, self.ball, on_ball)
 
 
-def _within(positions: spec.Array, turn: float) -> spec.Array:
+def _within(positions: Array, turn: float) -> Array:
     """Positions within one turn, m; those that all are, as mostly, are left as they are."""
     if positions.min() >= 0.0 and positions.max() < turn:
         return positions
