@@ -187,7 +187,7 @@ def slopes_of_row(knots, row, slopes):  # type: ignore[no-untyped-def]
         if secant * steep > 0.0:
             before = width + 2.0 * wide
             behind = 2.0 * width + wide
-            slopes[j] = (before + behind) * secant * steep / (before * steep + behind * secant)
+            slopes[j] = (before + behind) / (before / secant + behind / steep)
         width = wide
         secant = steep
 
