@@ -133,7 +133,7 @@ class ReducedCase(PreparedCase):
     def to_look_up(self) -> list[int]:
         """States, by their numbers, at which the path may be scanned: of covered cells fewer than all."""
         ensemble = self._reduced.ensemble
-        if self.case.contact.approaches is not None or self._seen[0].cells == "whole":
+        if self.case.contact.approaches is not None or self.cells_seen == "whole":
             return list(range(len(ensemble.approaches)))
         return states_apart(ensemble.approaches, ensemble.forces)
 

@@ -154,9 +154,14 @@ class PreparedCase:
         return f"covered for {' and '.join(law for law in self.case.laws if spec_of(law).sees_heights)}"
 
     @property
+    def cells_seen(self) -> str:
+        """Kind of cells, as in `HalfSpace`, of laws that see heights."""
+        return self.cells_of_heights or self.shape.cells
+
+    @property
     def kinds_of_cells(self) -> tuple[str, ...]:
         """Kinds of cells, as in `HalfSpace`, on which its contacts are solved."""
-        return tuple(dict.fromkeys((self.shape.cells, self.cells_of_heights or self.shape.cells)))
+        return tuple(dict.fromkeys((self.shape.cells, self.cells_seen)))
 
     @property
     def of_heights(self) -> tuple[Geometry, Textures]:

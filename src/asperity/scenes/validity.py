@@ -291,7 +291,7 @@ def _whole_cells(prepared: PreparedCase, pressed: PressedSamples) -> Iterator[Fi
     case = prepared.case
     shape = prepared.shape
     solving = tuple(law for law in case.laws if spec_of(law).solved_every_step)
-    if not solving or (prepared.cells_of_heights or shape.cells) != "whole":
+    if not solving or prepared.cells_seen != "whole":
         return
     missed = rim_cells.stiffness_missed(shape)
     samples = [shape.body - each.undeformed_gap for each in pressed.contacts]
