@@ -32,7 +32,7 @@ def chromium():
         started.close()
 
 
-def page_of(browser, width=1280, height=1000, scheme="light"):
+def shared_page(browser, width=1280, height=1000, scheme="light"):
     """The page that all tests of a browser share; one of their own would start a process, for half a second.
 
     It is as wide and high as asked for, on a screen, with nothing beneath the mouse.
@@ -112,13 +112,16 @@ EMPTY = """() => {  // panels without words, or with nothing but words and grid
     copy.drawImage(canvas, -x, -y);
     const { data } = copy.getImageData(0, 0, across, down);
     let drawn = 0;
-    for (let i = 0; i < data.length; i += 4) {
+    for (let i = 0; drawn < 100 && i < data.length; i += 4) {
       const off = grid.reduce((sum, part, k) => sum + Math.abs(data[i + k] - part), 0);
       if (data[i + 3] > 200 && off > 60) drawn++;
     }
     return drawn < 100 || (canvas.texts ?? []).length < 3;
   }).map((canvas) => canvas.closest("figure").id);
 }"""
+
+
+ALL_HAVE = "(what) => [...document.querySelectorAll('figure.chart')].every((it) => it.querySelector(what))"
 
 
 def settled(page):
@@ -136,7 +139,7 @@ def pixels(page, name, colour, panel=0):
 @contextmanager
 def pages_of(browser, address):
     """Opens a page at any width, with all drawn as before it is printed; nothing is loaded, nothing fails."""
-    told, page = [], page_of(browser)
+    told, page = [], shared_page(browser)
     heard = {
         "console": lambda message: told.append(message.text),
         "pageerror": lambda error: told.append(str(error)),
@@ -144,12 +147,10 @@ def pages_of(browser, address):
     }
 
     def open_page(width=1280, scheme="light"):
-        page_of(browser, width, scheme=scheme).goto(address)
-        if page.locator("figure.chart").count():
-            page.locator("figure.chart.ready").last.wait_for(state="attached")
+        shared_page(browser, width, scheme=scheme).goto(address)
+        page.wait_for_function(ALL_HAVE, arg=".plot .panel")
         page.evaluate("for (const name of ['beforeprint', 'afterprint']) dispatchEvent(new Event(name))")
-        for figure in page.locator("figure.chart").all():
-            figure.locator(".uplot canvas").last.wait_for(state="attached")
+        page.wait_for_function(ALL_HAVE, arg=".uplot canvas")
         settled(page)
         return page
 

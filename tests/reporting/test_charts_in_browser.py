@@ -28,7 +28,7 @@ from asperity.reporting.data import page_colours
 from asperity.reporting.figure import PageFigure
 from asperity.reporting.page import figures_page, whole_page
 from asperity.scenes.report import write_summary
-from browser import OVERLAPS, assert_accessible, assert_readable, page_of, pages_of, pixels
+from browser import OVERLAPS, assert_accessible, assert_readable, pages_of, pixels, shared_page
 from small_cases import CASES
 
 AREAL = {"label": "areal", "law": "areal", "colour": BLUE, "width": 2.2}
@@ -251,19 +251,19 @@ def test_paper_has_all_figures_light_and_whole(opened):
     assert pixels(page, "run", COLOURS[BLUE]) > 15
 
 
-@pytest.mark.parametrize(
-    ("settings", "script"), [({"java_script_enabled": False}, ""), ({}, "delete window.DecompressionStream")]
-)
-def test_numbers_stand_where_nothing_is_drawn(browser, address, settings, script):
-    page = browser.new_page(**settings)
-    page.add_init_script(script)
+@pytest.mark.parametrize("lacking", ["scripts", "DecompressionStream"])
+def test_numbers_stand_where_nothing_is_drawn(browser, address, lacking):
+    scripts = lacking == "scripts"
+    context = browser.new_context(java_script_enabled=False) if scripts else browser.contexts[0]
+    page = context.new_page()
+    page.add_init_script(f"delete window.{lacking}")
     page.goto(address)
     assert page.get_by_text("4711").first.is_visible()
     page.close()
 
 
 def test_figures_far_below_are_drawn_when_they_are_near(browser, address):
-    page = page_of(browser, 390, 500)
+    page = shared_page(browser, 390, 500)
     page.goto(address)
     page.wait_for_selector("#run .uplot canvas")
     assert page.locator("#words .uplot").count() == 0
@@ -289,18 +289,16 @@ PRINTED_SIZE = """matchMedia("print").addEventListener("change", ({ matches }) =
 
 
 def test_tables_are_whole_on_narrow_screens_and_contents_stay_in_sight(browser, reports):
-    with pages_of(browser, (reports[WIDEST] / "report.html").as_uri()) as opened:
-        page = opened(390)
-        assert page.evaluate(CUT) == []
-        assert (
-            page.locator(".rows td").first.evaluate("it => getComputedStyle(it, '::before').content")
-            == '"law"'
-        )
-        regions = page.evaluate(REGIONS)
-        assert len(set(regions)) == len(regions)  # no two landmarks of one name
-        page.evaluate("document.querySelector('#provenance').scrollIntoView()")
-        contents = page.locator("nav[aria-label=Contents]").bounding_box()
-        assert 0.0 <= contents["y"] < 1000.0
+    page = shared_page(browser, 390)
+    page.goto((reports[WIDEST] / "report.html").as_uri())
+    assert page.evaluate(CUT) == []
+    before = page.locator(".rows td").first.evaluate("it => getComputedStyle(it, '::before').content")
+    assert before == '"law"'
+    regions = page.evaluate(REGIONS)
+    assert len(set(regions)) == len(regions)  # no two landmarks of one name
+    page.evaluate("document.querySelector('#provenance').scrollIntoView()")
+    contents = page.locator("nav[aria-label=Contents]").bounding_box()
+    assert 0.0 <= contents["y"] < 1000.0
 
 
 @pytest.mark.parametrize("way", ["button", "summary"])
@@ -309,7 +307,7 @@ def test_a_summary_is_one_sheet_of_paper(browser, reports, real_runs, tmp_path, 
     file = reports[WIDEST] / "report.html"
     if way == "summary":
         file = write_summary(real_runs[WIDEST], tmp_path / "summary.html")
-    page = page_of(browser, 1200, 900)
+    page = shared_page(browser, 1200, 900)
     page.goto(file.as_uri())
     page.evaluate("window.print = () => { window.printed = true; }")
     page.locator("figure.chart.ready").last.wait_for(state="attached")
@@ -342,9 +340,11 @@ def report_address(request, reports):
 
 def test_every_figure_is_drawn_and_readable_on_screens_and_paper(browser, report_address):
     with pages_of(browser, report_address) as opened:
-        assert_readable(opened(390, "dark"), 390)
-        page = opened(1280, "dark")
+        page = opened(390, "dark")
+        assert_readable(page, 390)
+        page.set_viewport_size({"width": 1280, "height": 1000})
         assert_readable(page, 1280)
+        assert page.locator(".uplot canvas").first.bounding_box()["width"] > 390
         page.emulate_media(media="print")
         page.set_viewport_size({"width": 688, "height": 1000})  # of A4 between its margins
         assert_readable(page, 688)

@@ -5,6 +5,7 @@ None bars anybody, nor does any other page that is made of runs.
 
 import json
 import re
+from contextlib import contextmanager
 
 import numpy as np
 import pytest
@@ -15,12 +16,13 @@ from asperity import BallBearing
 from asperity.reporting import data
 from asperity.reporting.figure import columns_text
 from asperity.reporting.page import answers_of
+from asperity.reporting.payload import charts_json
 from asperity.results import read_result, save
 from asperity.scenes.report import CHAPTERS, compare, figures_of, page_of, report, write_summary
 from asperity.written_numbers import engineering
-from browser import assert_accessible, pages_of
+from browser import assert_accessible, pages_of, shared_page
 from command_line import call
-from small_cases import BEARING, CASES, Made, changed
+from small_cases import BEARING, CASES, changed
 
 TABLES = {
     "ball-on-beam": {"statistics", "contact_loss", "energy_balance"},
@@ -105,20 +107,30 @@ def read_by(part, tree):
 
 def shown(figure):
     """What is drawn, said and written of a figure, if there is one."""
-    return figure and (repr(figure.chart), figure.caption, columns_text(figure.columns))
+    return figure and (charts_json({"": figure.chart}, {}), figure.caption, columns_text(figure.columns))
+
+
+@contextmanager
+def lacking(tree, group, name):
+    """A result lacks a variable for a while."""
+    node = tree[group]
+    node.dataset = (whole := node.to_dataset(inherit=False)).drop_vars(name)
+    yield tree
+    node.dataset = whole
 
 
 def test_what_lacks_a_variable_is_left_out_and_all_others_stay(real_run):
     """A figure is the same without what it never asks for, and made or left out without each of the rest."""
     held = {(group, str(name)) for group, of in real_run.children.items() for name in of.data_vars}
-    lacking = Made(lambda variable: without(real_run, variable))
+    tree = real_run.copy()
     for part in PARTS.values():
         drawn, read = read_by(part, real_run)
         alone = data.unless_missing(part.drawn, without(real_run, *(held - read)))
         assert shown(alone) == shown(drawn), part.name
         needed = {(entry.group, entry.name) for entry in part.needs}
         for variable in held & read:
-            left = data.unless_missing(part.drawn, lacking[variable])
+            with lacking(tree, *variable):
+                left = data.unless_missing(part.drawn, tree)
             assert left is None or (drawn and variable not in needed), (part.name, variable)
 
 
@@ -231,12 +243,11 @@ LONG = """() => { for (const each of document.querySelectorAll(".numbers dd.big"
 
 
 def test_long_numbers_at_the_head_of_a_page_are_no_wider_than_a_phone(browser, runs, tmp_path):
-    page = report(runs(BEARING), tmp_path)
-    with pages_of(browser, page.as_uri()) as opened:
-        shown = opened(390, "light")
-        assert shown.locator(".numbers dd.big").count() > 2
-        shown.evaluate(LONG)
-        assert shown.evaluate("document.documentElement.scrollWidth") <= 390
+    shown = shared_page(browser, 390)
+    shown.goto(report(runs(BEARING), tmp_path).as_uri())
+    assert shown.locator(".numbers dd.big").count() > 2
+    shown.evaluate(LONG)
+    assert shown.evaluate("document.documentElement.scrollWidth") <= 390
 
 
 # --- data sheets of bearings

@@ -12,7 +12,7 @@ import numpy as np
 import psutil
 import pytest
 
-from browser import assert_accessible, page_of
+from browser import assert_accessible, shared_page
 from small_cases import BALL
 
 pytest.importorskip("starlette", reason="the extra app is not installed")
@@ -73,7 +73,7 @@ def served(tmp_path_factory):
 @pytest.fixture
 def tab(browser, served):
     """A tab with the page, whose script has met no error."""
-    opened, wrong = page_of(browser, height=900), []
+    opened, wrong = shared_page(browser, height=900), []
     opened.context.set_default_timeout(PATIENCE)
     heard = {
         "pageerror": lambda error: wrong.append(str(error)),
