@@ -13,7 +13,7 @@ from asperity.scenes.report import CHAPTERS, figures_of, page_of
 from asperity.schema import UNKNOWN, VERSION, Entry, bearing, convergence
 from asperity.schema.spectra import NO_SIGNAL
 from package_source import MODULES, nodes_of
-from small_cases import BEARING, unmarked
+from small_cases import BEARING, WHEEL, unmarked
 
 GROUPS = ("scenario", "surface", "contact", "rolling", "spectra", "track", "pass_by", "convergence",
           "measured", "effects", "bearing")  # fmt: skip
@@ -187,7 +187,8 @@ def test_what_is_not_finite_is_missing_with_a_reason_or_a_warning():
 BEAM = {"kind": "ball-on-beam", "duration": "10 ms", "laws": ["hertz"], "contact": {"samples": 1},
         "surface": {"rms": "0.3 um"}, "numerics": {"highest_frequency": "2 kHz"}}  # fmt: skip
 RAIL = {"kind": "wheel-on-rail", "duration": "50 ms", "settling": "50 ms", "laws": ["hertz", "linear"],
-        "contact": {"samples": 1}, "wheel": {"section": "rigid"}}  # fmt: skip
+        "contact": {"samples": 1, "spacing": "1 mm"}, "wheel": {"section": "rigid"},
+        "numerics": WHEEL["numerics"]}  # fmt: skip
 RINGING = {"wheel": {"section": "straight-web"}, "numerics": {"highest_frequency": "1.6 kHz"}}
 CORRUGATED = {"corrugation": "0.2 mm", "corrugation_wavelength": "30 mm"}
 

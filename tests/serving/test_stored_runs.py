@@ -1,17 +1,16 @@
 """Uploads go to disk in pieces, lead nowhere else, and stay only where somebody can read them; so do runs."""
 
 import asyncio
+import io
 import json
-import subprocess
 import sys
 
 import numpy as np
 import pytest
 
 from asperity.errors import InputError
-from asperity.serving import stored_runs
+from asperity.serving import stored_runs, worker
 from asperity.serving.stored_runs import TooLarge, keep_run, receive, told_of, uploaded
-from asperity.serving.worker import examined
 from command_line import SMALL
 
 
@@ -96,12 +95,14 @@ def test_names_lead_nowhere_else(name, safe):
 def test_a_map_is_described_and_what_it_lacks_is_asked_for(tmp_path):
     heights = np.random.default_rng(1).normal(size=(40, 30))
     np.save(tmp_path / "bare.npy", heights)
-    needs = examined(str(tmp_path / "bare.npy"))["needs"]
+    needs = worker.examined(str(tmp_path / "bare.npy"))["needs"]
     assert 'height_unit = "um" in [surface]' in needs
     assert str(tmp_path) not in needs
     rows = "\n".join(" ".join(f"{z:.4f}" for z in row) for row in heights)
     (tmp_path / "told.txt").write_text(f"# pixel: 2 um\n# z (um)\n{rows}\n")
-    assert examined(str(tmp_path / "told.txt"))["words"].startswith("map of 40 × 30 points, 2 um apart")
+    assert worker.examined(str(tmp_path / "told.txt"))["words"].startswith(
+        "map of 40 × 30 points, 2 um apart"
+    )
 
 
 @pytest.mark.parametrize("contents", [b"\x89HDF\r\n\x1a\nbroken", b"PK\x03\x04broken", b"no numbers at all"])
@@ -110,7 +111,7 @@ def test_what_nobody_can_read_is_refused(tmp_path, contents, ending):
     file = tmp_path / f"broken.{ending}"
     file.write_bytes(contents)
     with pytest.raises(InputError):
-        examined(str(file))
+        worker.examined(str(file))
 
 
 def test_what_is_no_identifier_names_no_folder(tmp_path):
@@ -157,17 +158,19 @@ def test_links_in_a_run_lead_nowhere(tmp_path):
     assert stored_runs.sounds_of_run(folder) == ["own.wav"]
 
 
-def test_a_run_writes_its_sounds_where_no_link_leads(tmp_path):
+def test_a_run_writes_its_sounds_where_no_link_leads(tmp_path, monkeypatch):
     """It begins anew in a folder of its own, whatever stands in its place."""
-    elsewhere, folder = tmp_path / "elsewhere", tmp_path / ("0" * 16)
+    elsewhere, folder, told = tmp_path / "elsewhere", tmp_path / ("0" * 16), io.StringIO()
     elsewhere.mkdir()
     folder.mkdir()
     (folder / "sounds").symlink_to(elsewhere)
     (folder / "case.toml").write_text(SMALL)
-    command = [sys.executable, "-c", "from asperity.serving.worker import roll_run; roll_run()", str(folder)]
-    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as rolls:
-        told = json.loads(rolls.stdout.read().splitlines()[-1])
-    assert told == {"state": "done"}
+    monkeypatch.setattr(sys, "argv", ["", str(folder)])
+    monkeypatch.setattr(worker, "_own_output", lambda: told)
+    for of_its_process in ("end_with_parent", "os.nice"):
+        monkeypatch.setattr(f"asperity.serving.worker.{of_its_process}", lambda *_: None)
+    worker.roll_run()
+    assert json.loads(told.getvalue().splitlines()[-1]) == {"state": "done"}
     assert stored_runs.is_own(folder, "run.nc")
     assert stored_runs.sounds_of_run(folder)
     assert not list(elsewhere.iterdir())
