@@ -139,6 +139,7 @@ def test_several_faults_are_a_list_whose_sections_have_numbers(tmp_path):
     deeper = case.with_(**{"fault[3].depth": "0.2 mm"})
     assert [each.depth for each in deeper.faults.values()] == pytest.approx([1e-4, 1e-4, 2e-4])
     assert list(case.with_(**{"fault[3]": None}).faults) == ["fault", "fault[2]"]
+    assert case.with_known(speed=25.0).faults == case.faults
     assert case.with_(fault=[on_ball]) == as_case(CASE | {"fault": on_ball})  # one is as it always was
     assert case.with_(fault=None) == as_case(CASE)
     (tmp_path / "case.toml").write_text(case.to_toml())

@@ -54,6 +54,14 @@ def test_a_round_punch_of_any_size_anywhere_has_its_stiffness(cells, within):
         assert np.abs(error[False]).max() > 4.0 * np.abs(error[True]).max()
 
 
+def test_a_place_is_the_distance_over_the_width_of_a_cell_along_the_normal():
+    """An edge at φ from the rows, the cells 2 × 3: from corner to corner 2 sin φ + 3 cos φ."""
+    angles = np.radians([0.0, 10.0, 25.0, 50.0, 90.0])[:, None]
+    distance = np.array([[0.4, -0.4]]) + np.zeros(angles.shape)
+    edges = Edges(distance, np.sin(angles) + np.zeros(distance.shape), np.zeros(distance.shape), (2.0, 3.0))
+    assert_allclose(edges.places, distance / (2.0 * np.sin(angles) + 3.0 * np.cos(angles)), rtol=1e-12)
+
+
 def test_an_elliptic_punch_has_its_stiffness():
     """k = π E* a / K(e), a the longer half axis."""
     from scipy.special import ellipk

@@ -11,6 +11,7 @@ from asperity.errors import InputError, OutOfRangeWarning
 from asperity.laws.layout import force
 from asperity.scenarios.raceway_grids import FOLLOWED, raceway_on
 from asperity.scenarios.raceway_laws import OnRaceway, raceway_laws
+from asperity.scenarios.raceway_limits import doubt_surface
 from asperity.scenarios.roller_raceways import felt_by
 from asperity.surfaces.cell_means import pressed_heights
 from asperity.surfaces.faults import Fault
@@ -278,6 +279,15 @@ def test_direct_over_a_pit_stays_between_its_rows():
     places = surface.spacing[0] * (np.round(places / surface.spacing[0])[:, None] + [0.0, 0.3, 0.5, 0.8])
     found, exact = (force(law, places.ravel(), APPROACH) for law in (direct, table))
     assert_allclose(found, exact, rtol=4e-4)
+
+
+def test_waves_on_any_line_of_a_raceway_count():
+    """200 approaches high on all lines but the first."""
+    smooth = raceway_on(CONTACT, LOAD, 0.2 * MM)
+    along = np.linspace(0.0, 20.0 * np.pi, len(smooth.heights), endpoint=False)
+    heights = 200.0 * APPROACH * np.outer(np.sin(along), np.arange(smooth.heights.shape[1]) > 0)
+    with pytest.raises(InputError, match=r"waves all around: received .*200 approaches of"):
+        doubt_surface(replace(smooth, heights=heights), APPROACH, "ball")
 
 
 @pytest.mark.parametrize("forwards", [True, False])

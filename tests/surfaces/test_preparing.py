@@ -9,7 +9,7 @@ from scipy.sparse import linalg
 
 from asperity import BallOnBeam, HeightMap, Profile, read_surface
 from asperity.errors import CaseError, MissingPointsWarning, ShortRecordWarning
-from asperity.surfaces.cleaning import fill, spikes, without_spikes
+from asperity.surfaces.cleaning import _local_median, fill, spikes, without_spikes
 from asperity.surfaces.levelling import band_limit, level, resample
 from asperity.surfaces.rotation import inscribed, rotated
 from asperity.surfaces.spectra import texture_direction
@@ -300,6 +300,18 @@ def test_spikes_are_found_among_missing_points_at_any_scale_and_turn():
     wide[50:53, 80:83] += 5e-6
     found = np.argwhere(spikes(HeightMap(wide, SPACING))).tolist()
     assert found == [[i, j] for i in (50, 51, 52) for j in (80, 81, 82)]
+
+
+def test_points_are_held_against_the_median_of_what_is_known_around_them():
+    """As NumPy has it, of odd and of even numbers; where nothing is known there is none."""
+    surface = make_map(lambda x, y: np.sin(9e4 * x) * np.cos(7e4 * y + x / UM))
+    heights = np.array(with_holes(surface, 0.45).heights)
+    heights[20:27, 10:17] = np.nan
+    found = _local_median(heights)
+    for i, j in np.ndindex(found[2:-2, 2:-2].shape):
+        around = heights[i : i + 5, j : j + 5]
+        known = around[np.isfinite(around)]
+        assert_allclose(found[i + 2, j + 2], np.median(known) if known.size else np.nan, rtol=1e-12)
 
 
 def test_spikes_are_taken_away_before_points_are_filled(tmp_path):

@@ -145,11 +145,14 @@ class _Point:
     def _hats(self, bay: int) -> Array:
         """Responses, (NODES + 3, n), to forces at nodes −1 … NODES + 1 of a bay; the point's is bay 0."""
         spectra = []
+        received = dict[tuple[int, int], Complex]()
         for place in range(bay * NODES - 1, (bay + 1) * NODES + 2):
             bays, node = divmod(place, NODES)
             side = 1 if place >= NODES * self.at else -1
+            if (side, bays) not in received:
+                received[side, bays] = self._received(side, bays)
             near = self.waves.near(self.bay + bays)[side][node]
-            spectra.append(np.sum(self._received(side, bays) * near, axis=0))
+            spectra.append(np.einsum("jf,jf->f", received[side, bays], near))
         return self.waves.grid.response(np.array(spectra))
 
 
