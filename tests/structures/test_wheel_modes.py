@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.linalg import eigh
 from scipy.optimize import brentq
 from scipy.special import jv, jvp, yv, yvp
 
@@ -14,7 +15,15 @@ from asperity.reference.railways import SECTIONS
 from asperity.store import Store
 from asperity.structures.body import Wheel
 from asperity.structures.outline import WheelSection, checked_outline, mesh_of, volume_of
-from asperity.structures.wheel_modes import DAMPING, SILENT, WheelModes, natural_modes, wheel_modes
+from asperity.structures.wheel_modes import (
+    DAMPING,
+    FIRST_MODES,
+    SILENT,
+    WheelModes,
+    matrices,
+    natural_modes,
+    wheel_modes,
+)
 from refusals import refusals
 
 STEEL = MATERIALS["steel"]
@@ -50,6 +59,19 @@ def test_a_thin_ring_breathes_and_bends_in_its_plane(n):
     middle = np.argmin(np.hypot(mesh.nodes[:, 0] - RING, mesh.nodes[:, 1] - 0.5 * SIDE))
     mass = RHO * SIDE**2 * 2.0 * math.pi * RING * (0.5 * (1.0 + 1.0 / n**2) if n else 1.0)
     assert shapes[at, middle, 0] ** -2.0 == pytest.approx(mass, rel=2e-3)
+
+
+@pytest.mark.parametrize("highest", [6e3, 100e3])
+def test_modes_are_all_up_to_the_highest_frequency_however_many(highest):
+    """As LAPACK finds them of the whole matrices: few, and more than are sought at first."""
+    mesh = rectangle(0.05, 0.2, 0.01, 0.02)
+    inside = mesh.nodes[:, 0] < 0.05 + 1e-9
+    frequency, _ = natural_modes(mesh, 2, STEEL, highest, held(mesh, inside))
+    free = np.flatnonzero(~held(mesh, inside).ravel())
+    whole = [each.toarray()[np.ix_(free, free)] for each in matrices(mesh, 2, STEEL)]
+    exact = np.sqrt(eigh(*whole, eigvals_only=True)) / (2.0 * np.pi)
+    assert (len(frequency) > 2 * FIRST_MODES) is (highest > 6e3)
+    np.testing.assert_allclose(frequency, exact[exact <= highest], rtol=1e-8)
 
 
 CYLINDER = (0.08, 0.16, 0.12)
