@@ -72,9 +72,9 @@ def pytest_sessionstart(session):
 def pytest_collection_finish():
     """Seek garbage seldom, and not in what stays until the end: modules, kernels, tests.
 
-    It took up to a fifth of the time of tests that make many objects.
+    It took up to a fifth of the time of tests that make many objects. What imports left stays with them: it
+    is little, and takes half a second to be found.
     """
-    gc.collect()
     gc.freeze()
     gc.enable()
     gc.set_threshold(20_000, 20, 20)
