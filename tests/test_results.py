@@ -10,7 +10,7 @@ import xarray as xr
 
 import asperity
 from asperity.errors import InputError
-from asperity.results import GROUPS, case_text, read_result, save, variable
+from asperity.results import GROUPS, case_text, groups_of_netcdf, read_result, save, variable
 from asperity.sandbox import sandboxed
 from asperity.scenes.report import Result
 from asperity.schema import VERSION
@@ -45,6 +45,18 @@ def test_a_result_comes_back_as_it_was(path, monkeypatch):
     assert case_text(path) == CASE
     path.unlink()
     found["rolling/contact_force"].values[:] = 0.0
+
+
+@pytest.mark.parametrize("attached", [0, 1])
+def test_a_variable_without_all_of_its_dimensions_is_named(tmp_path, attached):
+    with h5py.File(tmp_path / "a.nc", "w") as file:
+        file["force"] = np.zeros((3, 2))
+        file["time"] = np.zeros(3)
+        file["time"].make_scale("time")
+        for axis in range(attached):
+            file["force"].dims[axis].attach_scale(file["time"])
+    with pytest.raises(InputError, match=r"a damaged file \(.* \(a variable without dimensions, force"):
+        groups_of_netcdf(str(tmp_path / "a.nc"), True)
 
 
 def test_numbers_are_packed_with_a_checksum_and_come_back_to_the_bit(path):

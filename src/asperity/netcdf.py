@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
@@ -124,7 +125,8 @@ def _scale_of(variable: h5py.Dataset, axis: int) -> str:
     import h5py
 
     scales: list[h5py.h5d.DatasetID] = []
-    h5py.h5ds.iterate(variable.id, axis, scales.append, 0)
+    with suppress(RuntimeError):  # no axis has one
+        h5py.h5ds.iterate(variable.id, axis, scales.append, 0)
     if not scales:
         raise ValueError(f"a variable without dimensions, {_name_of(variable.id)}")
     return _name_of(scales[-1])
