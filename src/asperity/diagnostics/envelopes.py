@@ -1,4 +1,7 @@
-"""Spectra of a bearing's signal: its lines, those of its envelope, and velocities in bands."""
+"""Spectra of a bearing's signal: its lines, those of its envelope, and velocities in bands.
+
+Long records are transformed by NumPy: SciPy keeps tables for the last lengths, thirty megabytes in all.
+"""
 
 import math
 from collections.abc import Iterable
@@ -58,17 +61,16 @@ def _places(amplitude: Array, step: float) -> Array:
 
 def _amplitudes(signal: ArrayLike, rate: float) -> tuple[Array, float]:
     """Amplitudes (f,) of `amplitude_spectrum`, and the step between them, Hz."""
-    from scipy.fft import next_fast_len, rfft
+    from scipy.fft import next_fast_len
 
     values, rate = checked_signal(signal, rate)
     size = next_fast_len(2 * values.size, real=True)
     window = hann_window(values.size, centred=True)
     weight = window.sum()
-    padded = np.zeros(size)
-    np.multiply(window, values, out=padded[: values.size])
-    del window, values  # here and below: records may be as long as memory allows
-    lines = rfft(padded, overwrite_x=True)
-    del padded
+    values *= window
+    del window  # here and below: records may be as long as memory allows
+    lines = np.fft.rfft(values, size)
+    del values
     amplitude = np.abs(lines)
     del lines
     amplitude *= 2.0
@@ -156,19 +158,17 @@ def envelope_spectrum(signal: ArrayLike, rate: float, band: tuple[float, float] 
 
 def band_envelope(values: Array, rate: float, low: float, high: float) -> Array:
     """Size (n,) of the analytic signal of what lies between two frequencies, Hz."""
-    from scipy.fft import irfft, rfft
-
     frequency = np.arange((values.size + 1) // 2) * (rate / values.size)
     first = np.searchsorted(frequency, low)
     last = np.searchsorted(frequency, high, side="right")
     del frequency
-    lines = rfft(values)
+    lines = np.fft.rfft(values)
     lines[:first] = 0.0
     lines[last:] = 0.0
     lines[0] *= 2.0  # the others have an opposite one
-    envelope = irfft(lines, values.size)
+    envelope = np.fft.irfft(lines, values.size)
     lines *= -1j
-    turned = irfft(lines, values.size, overwrite_x=True)  # by a quarter of a period
+    turned = np.fft.irfft(lines, values.size)  # by a quarter of a period
     del lines
     envelope *= envelope
     turned *= turned
@@ -178,11 +178,9 @@ def band_envelope(values: Array, rate: float, low: float, high: float) -> Array:
 
 def above_frequency(values: Array, rate: float, lowest: float) -> Array:
     """What of a signal (n,) lies above a frequency, Hz."""
-    from scipy.fft import irfft, rfft
-
-    lines = rfft(values)
+    lines = np.fft.rfft(values)
     lines[: int(lowest * values.size / rate)] = 0.0
-    return irfft(lines, values.size)
+    return np.fft.irfft(lines, values.size)
 
 
 def prewhitened(signal: ArrayLike, rate: float) -> Array:
@@ -206,16 +204,14 @@ def prewhitened(signal: ArrayLike, rate: float) -> Array:
     Randall, N. Sawalhi and R. Ricci, Mechanical Systems and Signal Processing 36 (2013) 370; W. A. Smith and
     R. B. Randall, ibid. 64–65 (2015) 100, who find it to help with most records of faulty bearings.
     """
-    from scipy.fft import irfft, rfft
-
     values, _ = checked_signal(signal, rate)
-    lines = rfft(values)
+    lines = np.fft.rfft(values)
     size = np.abs(lines)
     np.maximum(size, FLOOR * size.max(), out=size)
     lines /= size
     count = values.size
     del values, size
-    white = irfft(lines, count, overwrite_x=True)
+    white = np.fft.irfft(lines, count)
     white *= np.sqrt(count)
     return white
 

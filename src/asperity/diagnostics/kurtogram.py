@@ -74,11 +74,9 @@ def kurtogram(signal: ArrayLike, rate: float, least_width: float = 0.0) -> Kurto
     whole record in place of a tree of filters: J. Antoni, Mechanical Systems and Signal Processing 21 (2007)
     108.
     """
-    from scipy.fft import ifft, rfft
-
     values, rate = checked_signal(signal, rate)
     values /= np.abs(values).max()
-    lines = rfft(values)
+    lines = np.fft.rfft(values)
     values *= values  # in place: a record may be as long as memory allows
     whole = values.sum() * values.size
     del values
@@ -89,7 +87,7 @@ def kurtogram(signal: ArrayLike, rate: float, least_width: float = 0.0) -> Kurto
             break
         for number in range(count):
             first, last = (1 + (lines.size - 1) * each // count for each in (number, number + 1))
-            part = ifft(lines[first:last])  # at the rate that the band needs
+            part = np.fft.ifft(lines[first:last])  # at the rate that the band needs
             power = np.abs(part)
             del part
             power *= power

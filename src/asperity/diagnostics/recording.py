@@ -210,8 +210,6 @@ def _thinned(
     samples: Samples, mean: float, reached: float, faded: bool, view: Callable[[Array], Array], step: int
 ) -> Array:
     """What a view makes of samples (n,), at one of so many of them, as `SignalPieces.seen` has it."""
-    from scipy.fft import irfft, rfft
-
     halves = max(math.ceil(2 * samples.size / MOST_SAMPLES), 2)
     half = quick_length(samples.size // halves // step)
     fading = hann_window(2 * half, centred=True)
@@ -222,7 +220,7 @@ def _thinned(
         if faded:
             block *= _fading(samples.size, places.start, places.start + block.size)
         kept = slice(first, first + 2 * half)
-        total[kept] += fading * irfft(rfft(view(block))[: half + 1], 2 * half)
+        total[kept] += fading * np.fft.irfft(np.fft.rfft(view(block))[: half + 1], 2 * half)
         weight[kept] += fading
     return total / (weight * step)
 
