@@ -89,20 +89,13 @@ def pytest_unconfigure():
 
 OPENED_APART = ("results", "structures.modal_files", "studies.kept_signals")
 OPENED_APART += ("surfaces.readers.libraries", "surfaces.readers.matlab")
-_met = set()  # what the sandbox has been asked to call
 
 
 @pytest.fixture(scope="module", autouse=True)
 def files_opened_here():
-    """Files of tests are their own: in a sandbox are opened the first of each kind, and what cannot be read.
-
-    Surfaces of `faults` are all opened in one, and so is what tests give back `sandboxed` for.
-    """
+    """Foreign files of tests are their own: only what cannot be read is opened in a sandbox."""
 
     def opened(function, path, arguments, **of_file):
-        if function not in _met:
-            _met.add(function)
-            return sandbox.sandboxed(function, path, arguments, **of_file)
         try:
             sandbox.send(function(str(path.absolute()), *arguments), answer := io.BytesIO())
         except InputError:
@@ -116,6 +109,13 @@ def files_opened_here():
         for module in OPENED_APART:
             patch.setattr(f"asperity.{module}.sandboxed", opened)
         yield
+
+
+@pytest.fixture
+def opened_apart(files_opened_here, monkeypatch):
+    """Foreign files are opened in a sandbox, as the program does."""
+    for module in OPENED_APART:
+        monkeypatch.setattr(f"asperity.{module}.sandboxed", sandbox.sandboxed)
 
 
 @pytest.fixture

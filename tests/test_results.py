@@ -11,7 +11,6 @@ import xarray as xr
 import asperity
 from asperity.errors import InputError
 from asperity.results import GROUPS, case_text, groups_of_netcdf, read_result, save, variable
-from asperity.sandbox import sandboxed
 from asperity.scenes.report import Result
 from asperity.schema import VERSION
 
@@ -36,9 +35,9 @@ def path(tmp_path):
     return save(small_tree(), tmp_path / "run.nc")
 
 
-def test_a_result_comes_back_as_it_was(path, monkeypatch):
+@pytest.mark.usefixtures("opened_apart")
+def test_a_result_comes_back_as_it_was(path):
     """Through the process that opens it, from its folder too; the file is closed, and arrays are our own."""
-    monkeypatch.setattr("asperity.results.sandboxed", sandboxed)
     found = read_result(path)
     xr.testing.assert_identical(found, small_tree())
     xr.testing.assert_identical(asperity.open_result(path.parent), Result.of(small_tree()))

@@ -16,7 +16,6 @@ import asperity
 from asperity.case.ball_bearing import BearingUnderLoad
 from asperity.case.cases import as_case
 from asperity.case.loaded_bearing import read_bearing
-from asperity.sandbox import sandboxed
 from asperity.studies import running
 from asperity.wave_files import wave_bytes
 from command_line import call, words_of
@@ -453,6 +452,7 @@ def waves_with_a_unit(file, samples):
     file.write_bytes(wave_bytes(samples / 3_276.7, RATE, 10.0, "m/s2"))
 
 
+@pytest.mark.usefixtures("opened_apart")
 @pytest.mark.parametrize(
     ("name", "write", "most"),
     [
@@ -466,7 +466,6 @@ def waves_with_a_unit(file, samples):
 )
 def test_a_signal_of_few_bytes_a_sample_takes_few_times_its_file(name, write, most, monkeypatch):
     """What the larger of two files takes more than the other."""
-    monkeypatch.setattr("asperity.surfaces.readers.matlab.sandboxed", sandboxed)  # as the program does
     monkeypatch.setattr("asperity.ranks.TOGETHER", 2**12)
     monkeypatch.setattr("asperity.diagnostics.decision.ENOUGH", 3.0)
     for module in ("decision", "recording"):

@@ -5,23 +5,12 @@ from pathlib import Path
 
 import pytest
 
-from asperity.sandbox import sandboxed
-
 sys.path.extend([str(Path(__file__).parent), str(Path(__file__).parents[1] / "surfaces")])
 from program import finished, prepared
 
 
 def pytest_itemcollected(item):
     item.add_marker(pytest.mark.faults)  # this hook sees tests of this folder alone
-
-
-@pytest.fixture(scope="module", autouse=True)
-def surfaces_opened_apart(files_opened_here):
-    """Each surface is opened in a sandbox, as the program does."""
-    with pytest.MonkeyPatch.context() as patch:
-        for module in ("libraries", "matlab"):
-            patch.setattr(f"asperity.surfaces.readers.{module}.sandboxed", sandboxed)
-        yield
 
 
 @pytest.fixture(scope="session")

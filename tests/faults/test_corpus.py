@@ -22,7 +22,6 @@ import asperity
 from asperity.errors import InputError
 from asperity.files import atomic_write
 from asperity.interrupts import interruptible
-from asperity.sandbox import sandboxed
 
 SECONDS = 60
 """That no failure takes."""
@@ -86,6 +85,7 @@ def replay(tmp_path):
     return replay
 
 
+@pytest.mark.usefixtures("opened_apart")
 @pytest.mark.parametrize("name", CORPUS)
 def test_what_once_failed(name, tmp_path, replay):
     words, code, says, files = CORPUS[name]
@@ -98,9 +98,8 @@ def test_what_once_failed(name, tmp_path, replay):
 
 
 @pytest.fixture
-def circles(tmp_path, monkeypatch):
+def circles(tmp_path, opened_apart):
     """A file in which HDF5 turns in circles, with a seal that fits; opened as the program does."""
-    monkeypatch.setattr("asperity.results.sandboxed", sandboxed)
     return atomic_write(tmp_path / "run.nc", lambda file: file.write(CIRCLES), sealed=True)
 
 

@@ -105,6 +105,7 @@ def test_mutated_cases(tmp_path):
         assert case.kind == "ball-on-beam"
 
 
+@pytest.mark.usefixtures("opened_apart")
 def test_mutated_netcdf(tmp_path):
     """HDF5 may hang or end its process: it has one of its own, and the program says so."""
     file = tmp_path / "a.nc"

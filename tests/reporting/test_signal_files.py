@@ -85,6 +85,7 @@ def test_exponents_of_a_unit_are_those_of_its_length_and_force(unit, length, for
     assert signal["ordinate_force_unit_exp"] == force
 
 
+@pytest.mark.usefixtures("opened_apart")
 def test_the_package_reads_its_own_universal_file_by_names(tmp_path):
     (file,) = asperity.write_signals(result(), tmp_path)
     read = read_record(file, array="contact_force by linear 2")

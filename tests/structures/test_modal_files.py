@@ -10,7 +10,6 @@ import pytest
 from numpy.testing import assert_allclose
 
 from asperity.errors import InputError
-from asperity.sandbox import sandboxed
 from asperity.structures import beam, modal, modal_files
 from refusals import refusals
 
@@ -289,8 +288,8 @@ test_universal_files_that_do_not_say_enough = refusals(
 )
 
 
-def test_damaged_universal_files(universal, monkeypatch):
-    monkeypatch.setattr("asperity.structures.modal_files.sandboxed", sandboxed)
+@pytest.mark.usefixtures("opened_apart")
+def test_damaged_universal_files(universal):
     file, rng = universal(nodes(), UNITS, mode()), np.random.default_rng(0)
     whole = file.read_bytes()
     for _ in range(3):

@@ -127,6 +127,7 @@ def written(folder, sweep=SWEEP, case=HEALTHY, format="parquet", **how):
         return list(csv.DictReader(file))
 
 
+@pytest.mark.usefixtures("opened_apart")
 def test_the_package_opens_a_set_and_finds_nothing_wrong():
     datasets = pytest.importorskip("bearing_datasets")
     from bearing_datasets.schema import validate

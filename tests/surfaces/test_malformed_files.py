@@ -16,7 +16,6 @@ from scipy.io import savemat
 from surface_files import npy, sdf_ascii, sdf_binary, x3p, x3p_xml, zipped
 
 from asperity.errors import InputError
-from asperity.sandbox import sandboxed
 from asperity.surfaces.readers import guards, read_surface
 
 STORED = np.add.outer(np.arange(3), 10 * np.arange(4))  # (y, x)
@@ -175,6 +174,7 @@ def test_file_without_permission(tmp_path):
         read_surface(file)
 
 
+@pytest.mark.usefixtures("opened_apart")
 @pytest.mark.parametrize(("code", "seconds", "message"), [
     ("import os; os.abort()", 20.0, r"a file that ends the program that opens it"),
     ("import numpy; numpy.ones(2**31)", 20.0, r"(MemoryError|more than 8 GiB of memory).* while it was"),
@@ -184,19 +184,18 @@ def test_file_without_permission(tmp_path):
 def test_a_library_that_fails_on_a_hostile_file(tmp_path, monkeypatch, code, seconds, message):
     (tmp_path / "SurfaceTopography.py").write_text(f"def open_topography(path):\n    {code}\n")
     monkeypatch.syspath_prepend(tmp_path)
-    monkeypatch.setattr("asperity.surfaces.readers.libraries.sandboxed", sandboxed)
     monkeypatch.setattr("asperity.sandbox.SECONDS", seconds)
     with pytest.raises(InputError, match=rf"a\.plu: received {message}"):
         read_surface(write(tmp_path / "a.plu", b"content"))
 
 
+@pytest.mark.usefixtures("opened_apart")
 def test_what_a_library_does_not_know_is_no_damaged_file(tmp_path, monkeypatch):
     """And all that it has tried is not told."""
     code = "class CannotDetectFileFormat(Exception): pass\ndef open_topography(path):\n"
     code += "    raise CannotDetectFileFormat('tried: ' + 40 * 'a, ')\n"
     (tmp_path / "SurfaceTopography.py").write_text(code)
     monkeypatch.syspath_prepend(tmp_path)
-    monkeypatch.setattr("asperity.surfaces.readers.libraries.sandboxed", sandboxed)
     with pytest.raises(InputError) as caught:
         read_surface(write(tmp_path / "a.plu", b"content"))
     assert "received a format that SurfaceTopography does not read; allowed: text, CSV" in str(caught.value)

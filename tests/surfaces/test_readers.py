@@ -217,6 +217,14 @@ def test_a_map_is_the_same_in_every_format(write, name, contents, hints):
     assert surface.source.startswith(name)
 
 
+@pytest.mark.usefixtures("opened_apart")
+@pytest.mark.parametrize("kind", ["netCDF", "classic netCDF 2", "matlab by name", "matlab 7.3"])
+def test_what_libraries_read_they_read_in_a_sandbox_too(write, kind):
+    name, contents, hints = WHOLE[kind]
+    surface = read_surface(write(name, contents), **hints)
+    np.testing.assert_allclose(surface.heights, 1e-9 * HEIGHTS, rtol=1e-14, atol=1e-24)
+
+
 @pytest.mark.parametrize(("name", "contents"), HOLED.values(), ids=HOLED)
 def test_a_missing_point_is_missing_in_every_format(write, name, contents):
     with pytest.warns(MissingPointsWarning, match=r"1 point \(8\.3 % of all\) has no height.*left as NaN"):
