@@ -83,6 +83,7 @@ class Motion(NamedTuple):
     force: NDArray  # (4, n), N, now and up to three steps ago
     elastic: NDArray  # (n,), the part of the force that is not the damper's, N
     approach: NDArray  # (2, n), as the laws see it, m, now and one step ago
+    placed: NDArray  # (2, n), now: approach of the mean surfaces, and displacement of what rolls, m
     rail: NDArray  # (p, 2 q), states of the poles of a rail's channels, m
     ring: NDArray  # (n, taps), displacement to come at each contact where the rail is scattered, m
     rail_ahead: NDArray  # (n,), displacement of the rail at the end of the step, as far as known, m
@@ -101,15 +102,15 @@ class Motion(NamedTuple):
 
 
 class Histories(NamedTuple):
-    """Time histories of t steps, written in place; displacements positive downwards."""
+    """Time histories of t steps, displacements positive downwards: what is written together lies together."""
 
-    contact_force: NDArray  # (n, t), N
-    relative_displacement: NDArray  # (n, t), approach, m
-    over_displacement: NDArray  # (n, t), of what is rolled over, at the contact, m
-    rolling_displacement: NDArray  # (n, t), of what rolls, at the contact, m
-    core: NDArray  # (b, d, t), coordinates, positive upwards
-    acceleration: NDArray  # (sensors, t), m/s²
-    displacement: NDArray  # (sensors, t), m; without rows where it is not asked for
+    contact_force: NDArray  # (t, n), N
+    relative_displacement: NDArray  # (t, n), approach, m
+    over_displacement: NDArray  # (t, n), of what is rolled over, at the contact, m
+    rolling_displacement: NDArray  # (t, n), of what rolls, at the contact, m
+    core: NDArray  # (t, b, d), coordinates, positive upwards
+    acceleration: NDArray  # (t, sensors), m/s²
+    displacement: NDArray  # (t, sensors), m; without columns where it is not asked for
 
 
 class Found(NamedTuple):
@@ -355,10 +356,10 @@ def solve_contacts(solve, system, motion, laws, row, shapes):  # type: ignore[no
 
 
 @compiled(**INNER, **REASSOCIATE)
-def end_step(system, motion, record, step, shapes, rates):  # type: ignore[no-untyped-def]
-    """Take the forces at the end of a step as they are, and write records and ledger; those of the start.
+def end_step(system, motion, record, step, row, shapes, rates):  # type: ignore[no-untyped-def]
+    """Take the forces at the end of a step as they are, and write a row of records, and the ledger.
 
-    Mode shapes under the contacts and their rates there (n, s), per second.
+    At step zero those of the start. Mode shapes under the contacts and their rates there (n, s), per second.
     """
     a = system.coefficients
     if step > 0:
@@ -384,21 +385,21 @@ def end_step(system, motion, record, step, shapes, rates):  # type: ignore[no-un
     for i in range(POWERS):
         motion.power[i] = 0.0
     for k in range(motion.trial.shape[0]):
-        observe_contact(system, motion, record, step, shapes, rates, k)
+        observe_contact(system, motion, record, step, row, shapes, rates, k)
     motion.power[OVER_DAMPING], motion.power[BODY_DAMPING] = dissipated(system, motion, shapes.shape[1])
     if step > 0:
         book(system, motion)
-    for b in range(record.core.shape[0]):
-        for i in range(record.core.shape[1]):
-            record.core[b, i, step] = motion.core[b, i]
+    for b in range(record.core.shape[1]):
+        for i in range(record.core.shape[2]):
+            record.core[row, b, i] = motion.core[b, i]
     for s in range(system.sensors.shape[0]):
         total = 0.0
         for j in range(system.sensors.shape[1]):
             resisted = system.damping[j] * motion.velocity[j] + system.stiffness[j] * motion.displacement[j]
             total += system.sensors[s, j] * (motion.push[j] - resisted)
-        record.acceleration[s, step] = total
-    for s in range(record.displacement.shape[0]):
-        record.displacement[s, step] = product(system.sensors[s], motion.displacement, 0)
+        record.acceleration[row, s] = total
+    for s in range(record.displacement.shape[1]):
+        record.displacement[row, s] = product(system.sensors[s], motion.displacement, 0)
 
 
 @compiled(**ONCE)
@@ -423,7 +424,7 @@ def contact_rates(system, motion, shapes, rates, k):  # type: ignore[no-untyped-
 
 
 @compiled(**ONCE)
-def observe_contact(system, motion, record, step, shapes, rates, k):  # type: ignore[no-untyped-def]
+def observe_contact(system, motion, record, step, row, shapes, rates, k):  # type: ignore[no-untyped-def]
     """Write the records of a contact, and what its force did over the step: to it, and on the slope.
 
     The force is linear over the step, whatever it does from step to step: by parts its work on the contact
@@ -438,15 +439,16 @@ def observe_contact(system, motion, record, step, shapes, rates, k):  # type: ig
     rate = -(body_rate + over_rate + climb)
     first = system.channels.first
     on_rail = system.channels.source.shape[0] > 0 and first[k + 1] > first[k]
-    approach, rolling = record.relative_displacement[k], record.rolling_displacement[k]
-    record.contact_force[k, step], record.over_displacement[k, step] = force, over
-    approach[step] = -(over + body)
-    rolling[step] = -body
+    approach = -(over + body)
+    record.contact_force[row, k] = force
+    record.relative_displacement[row, k] = approach
+    record.over_displacement[row, k] = over
+    record.rolling_displacement[row, k] = -body
     motion.power[THROUGHPUT] += abs(force * over_rate) + abs(force * body_rate)
     if step > 0:
-        closer = approach[step] - approach[step - 1]
+        closer = approach - motion.placed[0, k]
         if on_rail:
-            closer = rolling[step] - rolling[step - 1]
+            closer = -body - motion.placed[1, k]
         before = motion.force[1, k]
         rise = force - before
         closing = 0.5 * (before + force) * closer
@@ -455,7 +457,9 @@ def observe_contact(system, motion, record, step, shapes, rates, k):  # type: ig
         motion.ledger[SLOPE_WORK] += h * product
     motion.rate[k], motion.climb[k] = rate, climb
     motion.approach[1, k] = motion.approach[0, k]
-    motion.approach[0, k] = approach[step] - system.softening[k] * force
+    motion.approach[0, k] = approach - system.softening[k] * force
+    motion.placed[0, k] = approach
+    motion.placed[1, k] = -body
     if on_rail:
         rate = (motion.approach[0, k] - motion.approach[1, k]) / h
     motion.power[CONTACT_DAMPING] += (force - motion.elastic[k]) * rate
@@ -491,8 +495,8 @@ def book(system, motion):  # type: ignore[no-untyped-def]
 def roll(sweep, solve, system, motion, record, laws, shapes, rates, offset, stop, largest):  # type: ignore[no-untyped-def]
     """Roll from the state's step to `stop`; False from a force larger than `largest`, or NaN.
 
-    Then the state stands at that step. Row 0 of mode shapes, their rates (k, n, s), and of laws that are laid
-    out, belongs to the step `offset`. Step zero is the start, which is only recorded. `sweep` is
+    Then the state stands at that step. Row 0 of records, mode shapes, their rates (k, n, s), and of laws that
+    are laid out, belongs to the step `offset`. Step zero is the start, which is only recorded. `sweep` is
     `solve_contacts` and `solve` what it calls.
     """
     for step in range(motion.counts[0] + 1, stop + 1):
@@ -501,7 +505,7 @@ def roll(sweep, solve, system, motion, record, laws, shapes, rates, offset, stop
         if step > 0:
             begin_step(system, motion, shapes[row])
             converged = sweep(solve, system, motion, laws, row, shapes[row])
-        end_step(system, motion, record, step, shapes[row], rates[row])
+        end_step(system, motion, record, step, row, shapes[row], rates[row])
         motion.counts[0] = step
         motion.counts[1] += 0 if converged else 1
         for k in range(motion.trial.shape[0]):

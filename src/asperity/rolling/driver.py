@@ -28,6 +28,7 @@ class RolledMechanism:
     body: Integers  # (n,), to which body each contact belongs
     contact_force: Array  # (n, t), N, compression positive
     history: Array  # (n, m), contact force of run-in and run, N
+    # this and the next two without rows where displacements of sensors alone were asked for
     relative_displacement: Array  # (n, t), approach of the mean surfaces, m, positive closing
     over_displacement: Array  # (n, t), of what is rolled over, at the contacts, m, positive downwards
     rolling_displacement: Array  # (n, t), of what rolls, at the contacts, m, positive downwards
@@ -59,16 +60,20 @@ def carried(
     """A mechanism that was set down, with contacts soft enough for the time step, and carried on to the end.
 
     By scales of the contact forces (n,), N, and rows of sensors (k, s) over all modes, whose displacements
-    are recorded beside accelerations where they are asked for. What is doubted is warned of.
+    are recorded beside accelerations where they are asked for, in place of those at the contacts, unless
+    structures bend under these. What is doubted is warned of.
     """
     ground = ground_of(course, sensors)
     system = assembly.system_of(ground, course.bodies, loads, course.time_step, course.mechanism.constant)
     started = assembly.softened(ground, system, course, highest_frequency)
-    stepper = Stepper(course, *started, ground.softest, displacements)
+    bends = any(small_motion(each) is not None for each in course.mechanism.structures)
+    at_contacts = bends or not displacements
+    stepper = Stepper(course, *started, ground.softest, displacements, at_contacts)
     try:
         stepper.run(progress, checkpoint)
-    finally:  # why a motion may have run away
-        _warn_if_bent(course.mechanism, stepper.record.over_displacement)
+    finally:
+        if bends:  # why a motion may have run away
+            _warn_if_bent(course.mechanism, stepper.record.over_displacement)
     for law in stepper.stepped.values():
         law.warn_of_flaws()
     names = [law.name for law in course.laws]

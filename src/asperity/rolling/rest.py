@@ -309,6 +309,7 @@ def at_zero(system: System) -> Motion:
     shapes |= {
         "force": (4, n),
         "approach": (2, n),
+        "placed": (2, n),
         "straight": (4, n),
         "power": POWERS,
         "ledger": 6,

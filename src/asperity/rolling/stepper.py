@@ -36,17 +36,20 @@ class Stepper:
     largest: float  # contact force that makes no sense any more, N
     softest: float  # largest static compliance under a contact on its path, m/N; infinite if nothing holds it
     displacements: bool = False  # whether those of the sensors are recorded
+    at_contacts: bool = True  # whether approaches and displacements at the contacts are
 
     def __post_init__(self) -> None:
         n = self.course.contacts
         steps = self.course.total + 1
         b, states = self.system.core_pressed.shape
         sensors, modes = self.system.sensors.shape
-        force, approach, over, rolling = np.zeros((4, n, steps))
-        core = np.zeros((b, states // 2, steps))
-        acceleration = np.zeros((sensors, steps))
-        moved = np.zeros((sensors if self.displacements else 0, steps))
-        self.record = stepping.Histories(force, approach, over, rolling, core, acceleration, moved)
+        self.length = int(np.clip(SHAPES_AT_ONCE // max(n * modes, 1), LEAST, LONGEST))
+        moved = sensors if self.displacements else 0
+        widths = (n,), (n,), (n,), (n,), (b, states // 2), (sensors,), (moved,)
+        # of the chunk in work, a row for each step, and of all steps, which come last
+        self.piece = stepping.Histories(*(np.zeros((self.length + 1, *width)) for width in widths))
+        kept = (n,), *(3 * ((n * self.at_contacts,),)), *widths[4:]
+        self.record = stepping.Histories(*(np.zeros((*width, steps)) for width in kept))
         self.stepped = self.course.stepped
         # what laws say of the steps done: whether surfaces touch; least and largest approach from the plane
         # of each law, m, known of those that are looked up; and steps at which it was beyond its data
@@ -55,7 +58,6 @@ class Stepper:
             [(-np.inf, np.inf) if k in self.stepped else (np.inf, -np.inf) for k in range(n)]
         )
         self.beyond = np.zeros(n, dtype=np.int64)
-        self.length = int(np.clip(SHAPES_AT_ONCE // max(n * modes, 1), LEAST, LONGEST))
         self.offset = self.end = -1
         # one place for all chunks: fresh memory takes longer than what is computed
         self.shapes, self.rates = np.zeros((2, self.length + 1, n, modes))
@@ -114,15 +116,22 @@ class Stepper:
         done = int(self.motion.counts[0])
         self._hold(done + 1)
         stop = min(stop, self.end)
-        state = (self.system, self.motion, self.record)
+        state = (self.system, self.motion, self.piece)
         along = (self.shapes, self.rates, self.offset)
         if not self.stepped:
             sound = bool(stepping.roll_prepared(*state, self.laid, *along, stop, largest))
         else:
             sound = self._advance_stepped(state, along, range(done + 1, stop + 1), largest)
+        self._keep(done + 1, int(self.motion.counts[0]) + 1)
         if sound:
             self._look(done + 1, stop + 1)
         return sound
+
+    def _keep(self, first: int, stop: int) -> None:
+        """Keep the histories of steps that were done."""
+        for whole, piece in zip(self.record, self.piece, strict=True):
+            if whole.size:
+                whole[..., first:stop] = np.moveaxis(piece[first - self.offset : stop - self.offset], 0, -1)
 
     def _advance_stepped(
         self, state: tuple[Any, ...], along: tuple[Any, ...], steps: range, largest: float
@@ -139,8 +148,12 @@ class Stepper:
         """Note what laws say of steps that were done: without what softened contacts took of approaches."""
         done = slice(first, stop)
         row = first - self.offset
-        force = self.record.contact_force[:, done]
-        seen = self.record.relative_displacement[:, done] - self.system.softening[:, None] * force
+        rows = slice(row, stop - self.offset)
+        force = self.piece.contact_force[rows]
+        seen = np.ascontiguousarray(
+            (self.piece.relative_displacement[rows] - self.system.softening * force).T
+        )
+        force = np.ascontiguousarray(force.T)
         for k, law in enumerate(self.pieces):
             self.touching[k, done] = in_contact(law, row, force[k], seen[k])
             if isinstance(law, Prepared):
