@@ -1,7 +1,5 @@
 """What a check says that a bearing takes: contacts that are solved, cells at rims, what is compiled."""
 
-import json
-
 import pytest
 
 import asperity
@@ -46,20 +44,6 @@ def test_a_plan_says_how_cells_at_rims_count_and_compiles_both_kinds(monkeypatch
     assert "cells at rims" not in dict(rows)
     longer = work.compiling - blind.compiling
     assert longer == pytest.approx(run_time.pace() * compiling.CELLS_TIME["covered"])
-
-
-def test_a_result_says_how_cells_at_rims_counted_as_its_plan_does():
-    """A law that sees no heights has none."""
-    case = as_case(BEARING | {"laws": ["table"], "duration": "50 ms"})
-    numerics = [
-        asperity.run(each, brief=True)["scenario"].attrs["numerics"]
-        for each in (case, case.with_(laws=["hertz"]))
-    ]
-    seen, blind = (
-        [row["value"] for row in json.loads(rows) if row["name"] == "cells at rims"] for rows in numerics
-    )
-    assert seen == ["covered on the inner raceway", "whole on the outer raceway"]
-    assert blind == []
 
 
 def test_what_is_told_of_a_law_that_solves_every_step_is_at_most_all_balls_on_both_rings():

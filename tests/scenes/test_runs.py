@@ -270,7 +270,7 @@ def test_what_new_prints_of_a_bearing_runs_and_says_which_part_is_heard(kind):
 @pytest.mark.parametrize(
     ("kind", "keys"),
     [
-        ("wheel-on-rail", {"duration": 0.15}),
+        ("wheel-on-rail", {"duration": 0.15, "settling": 0.2, "contact.samples": 4}),
         *(pytest.param(kind, {}, marks=pytest.mark.long) for kind in CASES),
     ],
 )

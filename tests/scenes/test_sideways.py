@@ -260,7 +260,7 @@ BOGIE = {"type": "bogie", "masses": [3000.0], "springs": [1.2e6], "dampers": [2e
 
 def bodies(body, surface):
     over = {name: each for name, each in HEARD.items() if name != "wheel"} | {"speed": 56.0, "start": "20 m"}
-    own = {"body": body, "surface": surface, "sideways": {"contact_place": PLACE}}
+    own = {"body": body, "surface": surface, "sideways": {"contact_place": PLACE}, "duration": "0.1 s"}
     return Bodies(**over | own | {"over": "track", "numerics": HEARD["numerics"] | {"time_step": STEP}})
 
 

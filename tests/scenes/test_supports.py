@@ -125,7 +125,14 @@ TRACKS = {
 
 @pytest.fixture(scope="module", params=TRACKS)
 def run(request):
-    case = {**WHEEL, "laws": ["linear"], "duration": "0.1 s", "track": TRACKS[request.param]}
+    fine = {"highest_frequency": "4 kHz", "kernel": "scatter"}
+    case = {
+        **WHEEL,
+        "laws": ["linear"],
+        "duration": "0.1 s",
+        "track": TRACKS[request.param],
+        "numerics": fine,
+    }
     return request.param, asperity.run(case)
 
 
