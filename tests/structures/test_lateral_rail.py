@@ -259,3 +259,11 @@ test_bad_questions_are_refused = refusals(
         "decay of a rail wave over",
     ),
 )
+
+
+def test_waves_that_are_kept_are_those_that_are_asked_for():
+    """Of frequencies that begin alike, and of those that were asked for before."""
+    track = LateralTrack(Track.named("uic60"))
+    for frequency in ([100.0, 500.0], [100.0, 700.0], [100.0, 500.0, 900.0], [100.0, 500.0]):
+        alone = LateralTrack(Track.named("uic60")).receptance(frequency, 0.3, 0.3)
+        assert_array_equal(track.receptance(frequency, 0.3, 0.3), alone)
