@@ -209,6 +209,9 @@ def swept():
         yield from ((kind, each) for each in reversed(own))
 
 
+SWEPT = {(kind, each.dotted): each for kind, each in swept()}
+
+
 def beside(kind, entry):
     """Keys that stand beside one in its section, where it is given; that with which it goes among them."""
     known = {each.dotted: each for each in entries(case_class(kind))}
@@ -269,7 +272,7 @@ DOUBTS = {}
 
 @cache
 def of_the_usual(kind, dotted):
-    entry = next(each for each in numbers_of(kind) if each.dotted == dotted)
+    entry = SWEPT[kind, dotted]
     with PhysicsWarning.caught() as caught:
         case = as_case(with_key(kind, entry, usual(kind, entry)))
     if case.text not in DOUBTS:
@@ -294,7 +297,7 @@ def measured(tmp_path_factory):
 
 @pytest.mark.parametrize("factor", [1e3, 1e-3])
 @pytest.mark.parametrize(("kind", "entry"), [
-    pytest.param(kind, entry, id=f"{kind} {entry.dotted}") for kind, entry in swept()
+    pytest.param(kind, entry, id=f"{kind} {dotted}") for (kind, dotted), entry in SWEPT.items()
 ])  # fmt: skip
 def test_a_size_a_thousand_times_off_is_refused_or_doubted_or_named_here(kind, entry, factor):
     larger = factor > 1.0
