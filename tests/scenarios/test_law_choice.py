@@ -112,6 +112,13 @@ def test_a_mapped_point_expects_what_was_found_there():
         assert 1.0 < shifted.high / shifted.error == pytest.approx(shifted.error / shifted.low)
 
 
+def test_scenes_of_two_kinds_are_as_far_apart_as_is_said():
+    """At the same place: by one coordinate for each kind on the map."""
+    kinds, place = {point.kind for point in MAP.points}, MAP.points[0].place
+    rail, beam = (law_choice._coordinates(MAP, kind, place) for kind in sorted(kinds))
+    assert np.linalg.norm(rail - beam) == pytest.approx(law_choice.OTHER_KIND, rel=1e-12)
+
+
 def bands(points, least=0.0):
     """By law, at some points: whether its error is in the expected band, and by how much it is off."""
     found = {law: [] for law in MAP.spread}

@@ -292,11 +292,11 @@ def choose(mapped: LawMap, kind: str, place: Place, laws: Sequence[str]) -> LawC
     known = [law for law in dict.fromkeys((*CHEAP, *laws)) if law in mapped.spread]
     expected = sorted((expected_error(mapped, kind, place, law) for law in known), key=lambda e: e.error)
     here = _coordinates(mapped, kind, place)
-    distances = [float(np.linalg.norm(_coordinates(mapped, p.kind, p.place) - here)) for p in mapped.points]
+    distances = np.linalg.norm(_of_points(mapped) - here, axis=1)
     reached = [p.place.highest_wavenumber for p in mapped.points if p.kind == kind]
     reach = (min(reached) / MARGIN, max(reached) * MARGIN)
     nearest = mapped.points[int(np.argmin(distances))]
-    return LawChoice(place, {found.law: found for found in expected}, min(distances), nearest, reach)
+    return LawChoice(place, {found.law: found for found in expected}, float(distances.min()), nearest, reach)
 
 
 def expected_error(mapped: LawMap, kind: str, place: Place, law: str) -> ExpectedError:
@@ -322,7 +322,7 @@ def estimate(mapped: LawMap, kind: str, place: Place, law: str) -> tuple[float, 
 def _fitted(mapped: LawMap, law: str) -> tuple[Array, Array, Array]:
     """Coordinates of the points of a law, logarithms of its errors there, and their inverse covariance."""
     known = [point for point in mapped.points if law in point.errors]
-    at = np.array([_coordinates(mapped, point.kind, point.place) for point in known])
+    at = _of_points(mapped)[[law in point.errors for point in mapped.points]]
     inverse = np.asarray(np.linalg.inv(_covariance(at, at) + NOISE * np.eye(len(at))), dtype=np.float64)
     return at, np.log([point.errors[law] for point in known]), inverse
 
@@ -337,8 +337,20 @@ def _coordinates(mapped: LawMap, kind: str, place: Place) -> Array:
     """Coordinates of a place; a contact feels no difference between lengths far beyond its own."""
     lengths = (min(place.correlation, LONG), min(place.across, WIDE))
     ratios = np.maximum([place.within, place.dynamic, *lengths, place.highest_wavenumber], TINY)
-    kinds = [known == kind for known in sorted({point.kind for point in mapped.points})]
+    kinds = [known == kind for known in _kinds(mapped)]
     return np.append(np.log(ratios) / STEP, np.multiply(kinds, OTHER_KIND / math.sqrt(2.0)))
+
+
+@lru_cache(maxsize=4)
+def _kinds(mapped: LawMap) -> list[str]:
+    """Kinds of scenes on a map."""
+    return sorted({point.kind for point in mapped.points})
+
+
+@lru_cache(maxsize=4)
+def _of_points(mapped: LawMap) -> Array:
+    """Coordinates (n, c) of all points of a map."""
+    return np.array([_coordinates(mapped, point.kind, point.place) for point in mapped.points])
 
 
 def _db(error: float) -> str:
