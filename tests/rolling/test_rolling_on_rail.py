@@ -34,7 +34,7 @@ def texture(rms, points=8000):
 
 @pytest.fixture(scope="module")
 def kernel():
-    return moving_kernel(TRACK, SPEED, STEP, duration=0.08, positions=12)
+    return moving_kernel(TRACK, SPEED, STEP, duration=0.08, positions=6)
 
 
 @pytest.fixture(scope="module")
