@@ -221,3 +221,4 @@ def test_a_band_holds_the_lines_at_its_ends():
     for low, high, held in ((50.0, 100.0, 1.0), (100.0, 150.0, 1.0), (101.0, 150.0, 0.0), (50.0, 99.0, 0.0)):
         magnitude = envelopes.band_envelope(values, 1_000.0, low, high)
         np.testing.assert_allclose(magnitude, held, atol=1e-12)
+    np.testing.assert_allclose(envelopes.band_envelope(values + 0.5, 1_000.0, 0.0, 50.0), 0.5, atol=1e-12)

@@ -165,7 +165,6 @@ def band_envelope(values: Array, rate: float, low: float, high: float) -> Array:
     lines = np.fft.rfft(values)
     lines[:first] = 0.0
     lines[last:] = 0.0
-    lines[0] *= 2.0  # the others have an opposite one
     envelope = np.fft.irfft(lines, values.size)
     lines *= -1j
     turned = np.fft.irfft(lines, values.size)  # by a quarter of a period
