@@ -65,6 +65,8 @@ def test_every_other_state_is_left_out_where_those_beside_it_tell_its_force():
     assert states_apart(approaches, bent) == [0, 1, 2, 3, 4, 5, 6, 8, 10]  # slopes reach one state farther
     one = np.stack([straight[0], straight[0], bent[0]])  # one sample is enough
     assert states_apart(approaches, one)[:3] == [0, 1, 2]
+    both = np.stack([bent[0], 2.0 * straight[0] - bent[0]])  # errors do not make good for each other
+    assert states_apart(approaches, both)[:3] == [0, 1, 2]
     apart = 1e9 * np.maximum(approaches - 1.2e-6, 0.0) ** 1.5  # nothing is known before it touches
     assert states_apart(approaches, apart[None])[:3] == [0, 1, 2]
     assert states_apart(approaches[:4], straight[:, :4]) == [0, 1, 2, 3]

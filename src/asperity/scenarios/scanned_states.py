@@ -34,7 +34,7 @@ def states_apart(approaches: Array, forces: Array) -> list[int]:
     found = shape_preserving(approaches[kept], root, approaches[between]) ** 1.5
     known = forces[:, between]
     off = np.sqrt(np.mean((found - known) ** 2, axis=0))
-    straight = (known > 0.0).all(axis=0) & (off <= CURVED * known.mean(axis=0))
+    straight = off <= CURVED * known.mean(axis=0)
     return sorted({*range(count)} - {*between[straight].tolist()})
 
 
