@@ -1,6 +1,8 @@
 """Strips that are generated where they are read, what is kept of them, and what they are like as a whole."""
 
 import gc
+import multiprocessing
+import sys
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from unittest.mock import Mock
@@ -398,3 +400,27 @@ def test_a_flat_strip_has_no_statistics():
     found = survey_strip(HeightMap(np.full((300, 11), 1e-6), 1e-6), 100)
     assert found.statistics == []
     assert not found.spectrum.any()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="processes are not forked there")
+@pytest.mark.filterwarnings("ignore:.*fork:DeprecationWarning")
+def test_a_forked_process_reads_what_it_wrote_whatever_is_written_beside():
+    made = Made()
+    made.read(0)
+    ours, theirs = multiprocessing.Pipe()
+
+    def other():
+        made.read(0, 1)
+        theirs.send("written")
+        theirs.recv()
+        made.read(1, 0)
+
+    process = multiprocessing.get_context("fork").Process(target=other)
+    process.start()
+    assert ours.poll(60)
+    made.read(2)
+    ours.send("written")
+    process.join()
+    assert process.exitcode == 0
+    made.read(0, 2)
+    assert made.numbers == [0, 2]

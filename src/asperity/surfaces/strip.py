@@ -1,5 +1,6 @@
 """Heights along a path, asked for in pieces; generated ones stay in a temporary file, and fill no memory."""
 
+import os
 import tempfile
 import threading
 import weakref
@@ -25,7 +26,8 @@ PIECE = 2**11
 class Fields:
     """Fields (rows, ny) by their names, each made once; in memory where no temporary file can be written.
 
-    With `fewest` they are in memory alone, and so many are kept whatever their size.
+    With `fewest` they are in memory alone, and so many are kept whatever their size. A process that is forked
+    reads what it has inherited, and writes into a file of its own.
     """
 
     def __init__(self, fewest: int | None = None) -> None:
@@ -34,6 +36,7 @@ class Fields:
         self._fewest = FEWEST if fewest is None else fewest
         self._held: dict[Hashable, Array | tuple[int, tuple[int, ...]]] = {}  # or offset in bytes, and shape
         self._file: IO[bytes] | None = None
+        self._writer = 0  # number of the process whose file it is
         self._close: Callable[[], object] = lambda: None
         self._length = 0  # of the file, bytes
         self.nbytes = 0  # that are held in memory
@@ -56,7 +59,8 @@ class Fields:
     def _put(self, name: Hashable, heights: Array) -> None:
         size = heights.nbytes
         full = self._length + size > BYTES_KEPT or self.nbytes + size > BYTES_IN_MEMORY
-        if full and len(self._held) >= self._fewest:
+        inherited = self._file is not None and self._writer != os.getpid()
+        if inherited or (full and len(self._held) >= self._fewest):
             self._close()
             self._held = {}
             self._file = None
@@ -68,6 +72,7 @@ class Fields:
         try:
             if self._file is None:
                 self._file = tempfile.TemporaryFile(prefix="asperity-")  # noqa: SIM115  closed below
+                self._writer = os.getpid()
                 self._close = weakref.finalize(self, self._file.close)
             self._file.seek(self._length)
             self._file.write(np.ascontiguousarray(heights).data)
