@@ -13,7 +13,7 @@ from asperity.reduction.stiffness import ForceTable
 from asperity.running import prepare_case
 from asperity.scenarios import laws, reducing, scanned_states
 from asperity.scenarios.preparing import scan_sizes, scans_of
-from asperity.scenarios.scanned_states import states_apart, states_around
+from asperity.scenarios.scanned_states import FEWEST, states_apart, states_around
 from asperity.scenes.compute import compute
 from asperity.spectra import band_levels, psd
 from small_cases import changed
@@ -70,6 +70,16 @@ def test_every_other_state_is_left_out_where_those_beside_it_tell_its_force():
     apart = 1e9 * np.maximum(approaches - 1.2e-6, 0.0) ** 1.5  # nothing is known before it touches
     assert states_apart(approaches, apart[None])[:3] == [0, 1, 2]
     assert states_apart(approaches[:4], straight[:, :4]) == [0, 1, 2, 3]
+
+
+def test_states_that_are_given_are_all_looked_up(own_cache):
+    keys = {"laws": ["table"], "contact": {"rim_cells": "covered"}}
+    chosen = laws.reduced_case(prepare_case(changed("ball-on-beam", **keys)), lambda *_: None)
+    count = len(chosen.reduction.approaches)
+    assert FEWEST <= len(chosen.to_look_up) < count
+    keys["contact"] = keys["contact"] | {"approaches": chosen.reduction.approaches.tolist()}
+    given = laws.reduced_case(prepare_case(changed("ball-on-beam", **keys)), lambda *_: None)
+    assert given.to_look_up == list(range(count))
 
 
 @pytest.mark.filterwarnings("ignore::asperity.errors.TruncatedContactWarning")  # of the filters, seldom
