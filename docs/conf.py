@@ -24,7 +24,8 @@ extensions = [
     "myst_nb",
     "sphinx_design",
     "sphinx_gallery.gen_gallery",
-    "written_pages",  # these three stand in extensions/
+    "written_pages",  # these four stand in extensions/
+    "forked_cells",
     "mathml",
     "reading_order",
 ]

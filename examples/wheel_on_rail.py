@@ -23,6 +23,7 @@ import asperity
 case = asperity.WheelOnRail(
     speed="200 km/h",
     laws=["shifted", "shifted-unfiltered", "printed", "printed-unfiltered", "linear"],
+    duration="0.5 s",
     settling="0.2 s",
     surface={"spectrum": "iso3095"},
     wheel={"roughness": "disc", "section": "rigid"},

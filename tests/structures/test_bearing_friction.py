@@ -108,18 +108,6 @@ def test_friction_that_falls_at_once_leaves_its_share_where_all_slips(monkeypatc
         assert ball.power(np.array([LOAD])) == pytest.approx([2.0 * most], rel=0.01)
 
 
-def test_the_same_load_heats_less_over_a_length_that_is_rolled_faster_where_friction_falls():
-    """The velocity is small for the slip of the faster of two bearings, and large for that of the slower."""
-    loaded = B6205.loaded(300.0, cage_angles=FOUR[:1])
-    falling, found = Friction(0.1, 0.5, 1e-3), creepage_of(loaded)
-    over_length = []
-    for speed in (0.1, 100.0):
-        turning = B6205.kinematics(speed)
-        heat = friction_of_balls(loaded, found, turning, falling).heat
-        over_length.append(np.nansum(heat) / rolling_speed(B6205, turning))
-    assert over_length[1] < 0.9 * over_length[0]
-
-
 @pytest.mark.parametrize("spin", [0.0, 30.0])
 def test_heat_is_traction_times_slip_and_less_than_if_all_slipped(spin):
     found = in_groove(0.3, spin)

@@ -7,7 +7,7 @@ from asperity import BallBearing, Friction
 from asperity.contact.groove_creepage import conformal_creepage, sliding_across, sliding_speed
 from asperity.errors import InputError
 from asperity.structures.bearing_creepage import creepage_of
-from asperity.structures.bearing_friction import BallOnRaceway, friction_of_balls
+from asperity.structures.bearing_friction import friction_of_balls
 from asperity.structures.raceway_wear import raceway_wear
 
 B6205 = BallBearing.named("6205")
@@ -124,18 +124,12 @@ def test_wear_grows_with_coefficient_and_speed_and_falls_with_hardness():
 
 @pytest.mark.parametrize(("bearing", "load"), [(B6205, (300.0, 0.0)), (B7205, (200.0, 400.0))])
 def test_what_sticks_does_not_wear(bearing, load):
-    """Volume over k/H is the heat over the coefficient of friction; the most there is where all slips.
-
-    Heat and wear are of the same contacts, which are solved once.
-    """
-    friction = Friction(0.1)
+    """Volume over k/H is the heat over the coefficient of friction; the most there is where all slips."""
     loaded = bearing.loaded(*load, speed=SPEED, cage_angles=FOUR[:2])
     turning = bearing.kinematics(SPEED, contact_angle=loaded.contact_angle)
     most = raceway_wear(loaded, turning, COEFFICIENT)
-    found = raceway_wear(loaded, turning, COEFFICIENT, friction)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.delattr(BallOnRaceway, "at")
-        heat = friction_of_balls(loaded, creepage_of(loaded), turning, friction).heat
+    found = raceway_wear(loaded, turning, COEFFICIENT, Friction(0.1))
+    heat = friction_of_balls(loaded, creepage_of(loaded), turning, Friction(0.1)).heat
     of_rings = np.nansum(heat, axis=2).mean(axis=1)
     np.testing.assert_allclose(found.volume, COEFFICIENT / bearing.hardness * of_rings / 0.1, rtol=1e-9)
     assert np.all(found.volume < 0.99 * most.volume)

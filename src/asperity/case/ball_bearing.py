@@ -430,7 +430,7 @@ class BearingUnderLoad(AnyCase):
                 allowed = "friction that stays where the speed changes"
                 yield InputError(f"creep.{name}", received, allowed, "Give a constant speed, or remove it.")
 
-    @cached_property
+    @property
     def friction_law(self) -> Friction | None:
         """Friction of balls on raceways, if it is looked at."""
         return None if self.friction is None else self.creep.law(self.friction)

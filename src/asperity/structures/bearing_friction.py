@@ -3,7 +3,6 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -27,8 +26,6 @@ ROOM = 1.1
 """Size of the grid over that of the contact."""
 DIGITS = 6
 """To which loads and spins of contacts, rad/m, are told apart."""
-_SOLVED = WeakKeyDictionary[LoadedBearing, dict[tuple[object, ...], SlidingContact]]()
-"""Contacts of bearings under their loads: their heat and their wear are of the same ones."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,18 +194,15 @@ def facts_of_contacts(
     """
     number = RINGS.index(ring)
     loads = (loaded.inner_load, loaded.outer_load)[number]
-    solved = _SOLVED.setdefault(loaded, {})
     known: dict[tuple[float, float], Array] = {}
     places = list(zip(*np.nonzero(np.isfinite(found.sliding[number])), strict=True))
     told = list[Array]()
     for place in places:
         load = float(f"{loads[place]:.{DIGITS}g}")
         spin = round(float(found.spin[number][place]), DIGITS)
-        key = ring, friction, speed, load, spin
-        if key not in solved:
-            solved[key] = BallOnRaceway.of(loaded.bearing, ring, friction, load, spin, speed).at(load)
         if (load, spin) not in known:
-            known[load, spin] = np.asarray(facts(solved[key]), dtype=float)
+            balls = BallOnRaceway.of(loaded.bearing, ring, friction, load, spin, speed)
+            known[load, spin] = np.asarray(facts(balls.at(load)), dtype=float)
         told.append(known[load, spin])
     rows = np.full((*loads.shape, *np.shape(told[0])), np.nan)
     for place, each in zip(places, told, strict=True):
