@@ -85,6 +85,14 @@ class Shell(InteractiveShell):
         """Wait for no windows."""
 
 
+class Examples(MultiprocessingBackend):
+    """Processes of the gallery, forked whatever Python would do by itself."""
+
+    def configure(self, *args, **kwargs):
+        """Begin them."""
+        return super().configure(*args, **kwargs | {"context": multiprocessing.get_context("fork")})
+
+
 def run_cells(ends, cells, folder):
     """Run cells in a folder; send their outputs, and what failed."""
     there, pipe = ends
@@ -140,5 +148,5 @@ def setup(app):
     app.connect("builder-inited", warm, priority=200)  # before the gallery starts processes of its own
     if sys.platform == "linux":  # what multiplies matrices on macOS does not outlive a fork
         direct.single_nb_execution = execute
-        register_parallel_backend("loky", MultiprocessingBackend)  # which forks, for the gallery
+        register_parallel_backend("loky", Examples)  # the gallery asks for no other
     return {"parallel_read_safe": True, "parallel_write_safe": True}
