@@ -11,7 +11,7 @@ from scipy.linalg import expm
 
 from asperity import HalfSpace
 from asperity.kernels import stepping
-from asperity.kernels.curves import shape_preserving, splines_along
+from asperity.kernels.curves import monotone_slopes, shape_preserving, splines_along
 from asperity.kernels.fourier import factors, roots, smooth_length, transform
 from asperity.kernels.influence import prepared
 from asperity.kernels.lanes import width
@@ -161,3 +161,14 @@ def test_kernels_call_others_with_arguments_one_by_one():
         if isinstance(each, ast.Call) and any(isinstance(given, ast.Starred) for given in each.args)
     ]
     assert not unpacking
+
+
+def test_slopes_at_the_ends_are_those_of_a_parabola_between_half_and_twice_the_secant():
+    knots = np.array([1.0, 1.3, 1.9, 2.2])
+    slopes = monotone_slopes(knots, np.array([knots**2, 0.0 * knots]))
+    np.testing.assert_allclose(slopes[0, [0, -1]], 2.0 * knots[[0, -1]], rtol=1e-12)
+    held = monotone_slopes(np.arange(3.0), np.array([[0.0, 1.0, 9.0], [0.0, 8.0, 8.0]]))
+    assert held[0, 0] == 0.5  # of a secant of 1, where the parabola falls
+    assert held[1, 2] == 0.0  # of one of 0
+    assert held[0, 2] == pytest.approx(11.5)
+    np.testing.assert_array_equal(slopes[1], 0.0)
