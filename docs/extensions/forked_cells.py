@@ -3,86 +3,28 @@
 A kernel for each page would import and load all anew: two seconds of processor time for each, on 25 pages.
 """
 
-from __future__ import annotations
-
 import gc
-import io
 import multiprocessing
 import os
 import sys
 import time
-import traceback
+from queue import Empty
 
-import IPython.core.displayhook
-import IPython.core.displaypub
 import matplotlib.pyplot  # noqa: F401  (and all that follows, once for all pages)
 import matplotlib_inline.backend_inline  # noqa: F401
 import pandas  # noqa: F401
 import xarray  # noqa: F401
-from IPython.core.interactiveshell import InteractiveShell
+from ipykernel.inprocess.manager import InProcessKernelManager
 from joblib.parallel import MultiprocessingBackend, register_parallel_backend
 from jupyter_cache.executors.utils import ExecutionResult
 from myst_nb.core.execute import direct
-from nbformat.v4 import new_output
-from traitlets import Type
-from traitlets.config import Config
+from nbformat.v4 import output_from_msg
 
 import asperity
 from asperity.scenarios.compiling import compile_kernels
 
-OUTPUTS: list = []
-"""What the cell that runs has said and shown."""
-
 ENDING = 10.0  # s that a process has to end once it has answered
-
-
-class Said(io.TextIOBase):
-    """A stream that keeps what is written to it among the outputs."""
-
-    def __init__(self, name):
-        self.name = name
-
-    def writable(self):
-        """Whether it can be written to."""
-        return True
-
-    def write(self, text):
-        """Keep a text, beside what was said just before it."""
-        if text and OUTPUTS and OUTPUTS[-1].get("name") == self.name:
-            OUTPUTS[-1].text += text
-        elif text:
-            OUTPUTS.append(new_output("stream", name=self.name, text=text))
-        return len(text)
-
-
-class Shown(IPython.core.displaypub.DisplayPublisher):
-    """Keeps what a cell displays, as figures."""
-
-    def publish(self, data, metadata=None, **_):
-        """Keep one of them."""
-        OUTPUTS.append(new_output("display_data", data=data, metadata=metadata or {}))
-
-
-class Answered(IPython.core.displayhook.DisplayHook):
-    """Keeps the value of a cell's last line."""
-
-    def write_output_prompt(self):
-        """Say nothing before it."""
-
-    def write_format_data(self, format_dict, md_dict=None):
-        """Keep it in all its formats."""
-        answer = {"data": format_dict, "metadata": md_dict or {}, "execution_count": self.prompt_count}
-        OUTPUTS.append(new_output("execute_result", **answer))
-
-
-class Shell(InteractiveShell):
-    """A shell as that of a notebook, whose outputs are kept."""
-
-    displayhook_class = Type(Answered)
-    display_pub_class = Type(Shown)
-
-    def enable_gui(self, gui=None):
-        """Wait for no windows."""
+OUTPUTS = ("stream", "display_data", "execute_result", "error")
 
 
 class Examples(MultiprocessingBackend):
@@ -94,23 +36,33 @@ class Examples(MultiprocessingBackend):
 
 
 def run_cells(ends, cells, folder):
-    """Run cells in a folder; send their outputs, and what failed."""
+    """Run cells in a folder, by a kernel in this process; send their outputs, and what failed."""
     there, pipe = ends
     there.close()  # so that this process ends where nobody reads any more
     os.chdir(folder)
-    sys.stdout, sys.stderr = Said("stdout"), Said("stderr")
-    shell = Shell.instance(config=Config({"HistoryManager": {"enabled": False}}))
-    shell.showtraceback = lambda *_, **__: None  # it is sent
-    shell.enable_matplotlib("inline")
+    manager = InProcessKernelManager()
+    manager.client_class = "ipykernel.inprocess.blocking.BlockingInProcessKernelClient"
+    manager.start_kernel()
+    client = manager.client()
+    client.start_channels()
+    client.execute("%matplotlib inline", silent=True)
     outputs, failure = [], None
     for cell in cells:
-        OUTPUTS.clear()
-        done = shell.run_cell(cell, store_history=True)
-        outputs.append([*OUTPUTS])
-        if (error := done.error_before_exec or done.error_in_exec) is not None:
-            failure = f"{cell}\n{''.join(traceback.format_exception(error))}"
+        client.execute(cell)
+        outputs.append([output_from_msg(each) for each in told(client) if each["msg_type"] in OUTPUTS])
+        if failed := [each for each in outputs[-1] if each.output_type == "error"]:
+            failure = "\n".join([cell, *failed[0].traceback])
             break
     pipe.send((outputs, failure))
+
+
+def told(client):
+    """Messages that a kernel in this process has sent so far."""
+    while True:
+        try:
+            yield client.get_iopub_msg(timeout=0)
+        except Empty:
+            return
 
 
 def execute(notebook, cwd, timeout, **_):
