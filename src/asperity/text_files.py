@@ -37,9 +37,8 @@ BACKSLASH = (
 """What to do about a path whose letters a TOML file has changed."""
 LATIN_SHARE = 0.5
 """Least share of Latin characters in UTF-16 that bears no mark."""
-_BLOCK = 1 << 16
-_FIRST_BLOCK = 1 << 10
-"""Characters of a text that are taken at a time."""
+_FIRST_BLOCK, _BLOCK = 1 << 10, 1 << 16
+"""Characters of a text that are taken at a time, at first and then."""
 _PLAIN = re.compile(r"[\d.,;+\-eE \t\n]*+", re.ASCII)
 """Numbers and what stands between them."""
 _EMPTY_LINE = re.compile(r"(?:\A|\n)[,; \t]*(?:\n|[,; \t]\Z)")

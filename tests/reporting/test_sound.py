@@ -8,8 +8,6 @@ import numpy as np
 import pytest
 import xarray
 from scipy.fft import rfft, rfftfreq
-from scipy.signal import resample
-from scipy.signal.windows import tukey
 
 import asperity
 from asperity.reporting.sound import FADE, PEAK, RATE, Sound, at_rate, pass_by_pressure, radiated
@@ -56,16 +54,6 @@ def test_what_is_too_high_to_be_heard_is_left_out_and_folds_nowhere():
     spectrum = np.abs(np.fft.rfft(found * np.hanning(len(found))))
     assert np.argmax(spectrum) * RATE / len(found) == pytest.approx(440.0, abs=5.0)
     assert spectrum[round(1000 * len(found) / RATE) :].max() < 1e-4 * spectrum.max()
-
-
-@pytest.mark.parametrize("n", [3, 2000, 2001])
-@pytest.mark.parametrize("step", [1e-6, 1e-5, 1 / RATE, 5e-5])
-def test_the_series_and_the_ends_are_those_of_scipy(n, step):
-    """Which takes half a second to import, of every run that is listened to."""
-    signal = np.random.default_rng(1).normal(size=n)
-    soft = (signal - signal.mean()) * tukey(n, min(2.0 * FADE / (n * step), 1.0))
-    expected = resample(soft, max(round(n * step * RATE), 2))
-    np.testing.assert_allclose(at_rate(signal, step), expected, atol=1e-12)
 
 
 def test_laws_are_on_one_scale_unless_they_are_matched(tmp_path):

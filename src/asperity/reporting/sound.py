@@ -240,13 +240,9 @@ def at_rate(signal: Array, step: float) -> Array:
     By its Fourier series: exact for what repeats in the record, and longer or shorter than it by less than a
     sample, which changes pitch by less than that.
     """
+    from scipy.signal import resample  # takes half a second to import, of every run
+    from scipy.signal.windows import tukey
+
     n = len(signal)
-    fade = min(FADE / step, 0.5 * n) * (n - 1) / n  # samples
-    from_end = np.minimum(np.arange(n), np.arange(n)[::-1])
-    soft = (signal - signal.mean()) * (0.5 - 0.5 * np.cos(np.pi * np.minimum(from_end / fade, 1.0)))
-    count = max(round(n * step * RATE), 2)
-    lines = rfft(soft)
-    shorter = min(n, count)
-    if shorter % 2 == 0 and n != count:  # its last line is two of the longer one
-        lines[shorter // 2] *= 2.0 if count < n else 0.5
-    return irfft(lines, count) * (count / n)
+    soft = (signal - signal.mean()) * tukey(n, min(2.0 * FADE / (n * step), 1.0))
+    return resample(soft, max(round(n * step * RATE), 2))

@@ -49,8 +49,6 @@ ALIKE = 1e-6
 """Share of their loads by which balls may differ that are carried alike."""
 FORCES = ("inner_force", "outer_force")
 """They begin and end at once, where the filter rings: none is written that is below all that were found."""
-REACH, KAISER = 10, 5.0
-"""Of the low pass before samples are left out: its reach to either side, in samples that stay, and β."""
 SIGNALS = (*FORCES, "flank_force", "rib_force", "ball_motion", "inner_motion", "outer_motion", "acceleration")
 """What a run holds over time, beside what grows evenly."""
 
@@ -248,25 +246,11 @@ def cage_slip(case: BearingUnderLoad) -> Callable[[Array], Array]:
 
 
 def thinned(signal: Array, every: int) -> Array:
-    """A signal (…, n) at one of so many samples, without what the fewer samples do not hold.
-
-    From the line between its ends on, beyond which it is zero, it is averaged with the weights of an ideal
-    low pass under a Kaiser window.
-    """
+    """A signal (…, n) at one of so many samples, without what the fewer samples do not hold."""
     if every == 1:
         return signal
-    count = signal.shape[-1]
-    kept = -(-count // every)
-    result = np.empty((*signal.shape[:-1], kept))
-    reach = REACH * every
-    weights = np.zeros(2 * reach + every)
-    weights[: 2 * reach + 1] = np.sinc(np.arange(-reach, reach + 1) / every) * np.kaiser(
-        2 * reach + 1, KAISER
-    )
-    weights = weights.reshape(-1, every) / weights.sum()
-    for at in np.ndindex(signal.shape[:-1]):
-        line = np.linspace(signal[at][0], signal[at][-1], count)
-        beside = np.pad(signal[at] - line, (reach, kept * every - count + reach)).reshape(-1, every)
-        shares = weights @ beside.T  # of every group of samples to each of the averages that it lies in
-        result[at] = line[::every] + sum(share[i : i + kept] for i, share in enumerate(shares))
-    return result
+    if not signal.size:
+        return signal[..., ::every]
+    from scipy.signal import resample_poly
+
+    return resample_poly(signal, 1, every, axis=-1, padtype="line")
