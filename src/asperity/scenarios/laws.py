@@ -131,11 +131,11 @@ class ReducedCase(PreparedCase):
 
     @cached_property
     def to_look_up(self) -> list[int]:
-        """States, by their numbers, at which the path may be scanned: of covered cells fewer than all."""
+        """States, by their numbers, at which the path may be scanned."""
         ensemble = self._reduced.ensemble
-        if self.case.contact.approaches is not None or self.cells_seen == "whole":
-            return list(range(len(ensemble.approaches)))
-        return states_apart(ensemble.approaches, ensemble.forces)
+        if self.leaves_states_out:
+            return states_apart(ensemble.approaches, ensemble.forces)
+        return list(range(len(ensemble.approaches)))
 
     @property
     def scanned(self) -> slice:

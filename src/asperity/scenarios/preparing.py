@@ -175,7 +175,7 @@ def scans_of(prepared: PreparedCase, states: Array) -> dict[str, list[ScanJob]]:
         visited = list(range(len(states)))
         if case.contact.approaches is None:
             forces = reducing.nominal_forces(shape)
-            if prepared.cells_seen == "covered":
+            if prepared.leaves_states_out:
                 visited = states_apart(forces ** (2.0 / 3.0), forces[None])
             visited = visited[states_expected(states[visited], forces[visited], prepared.scene.loads)]
         found["path"] = scans([over.path], on, states[visited], table_stride(prepared), 1.0, textures.before)

@@ -10,8 +10,6 @@ OF_EDGES = 8
 """Positions in a half axis of the patch where edges come and go under it: of defects, of what is run in."""
 OF_TEXTURE = 4
 """Positions in a half axis of the patch, at most, where there is texture alone."""
-OF_SMOOTH = 3
-"""The same where cells at rims count as far as they are covered: forces are smooth there."""
 OF_WAVE = 5
 """Positions in the shortest wave that is looked at, where the patch does not ask for fewer."""
 
@@ -28,18 +26,17 @@ def table_stride(prepared: PreparedCase) -> int:
     approaches count from has that at every row. What is left for the table has hardly any waves that are
     short against the patch: with half axis a, those of length λ fall as sin q/q, q = 2πa/λ. Positions s apart
     take the wavenumber 2π/s − k for k: with a quarter of the patch q is 8π less that of k there, of which a
-    thirtieth is left, with a third 6π and a twentieth; with five positions in the shortest wave that is
-    looked at it is four times as large as that of any such wave, and cubic splines are 0.04 dB low. Levels in
-    one-third octaves are within 0.1 dB rms of those with a position in every row, of balls and wheels on
-    textures from nearly smooth ones to those that the load just holds down.
+    thirtieth is left, and with five positions in the shortest wave that is looked at four times as large as
+    that of any such wave; by as many positions cubic splines are 0.04 dB low. Levels in one-third octaves
+    are within 0.1 dB rms of those with a position in every row, of balls and wheels on textures from nearly
+    smooth ones to those that the load just holds down.
     """
     shape = prepared.shape
     closest = edge_stride(prepared.shape)
     if prepared.textures.defects is not None:
         return closest
     wave = slowest(prepared.case.speed) / prepared.case.numerics.highest_frequency
-    in_patch = OF_SMOOTH if prepared.cells_seen == "covered" else OF_TEXTURE
-    return max(closest, _rows(shape, min(shape.class_axes[0] / in_patch, wave / OF_WAVE)))
+    return max(closest, _rows(shape, min(shape.class_axes[0] / OF_TEXTURE, wave / OF_WAVE)))
 
 
 def _rows(shape: Geometry, length: float) -> int:

@@ -159,6 +159,15 @@ class PreparedCase:
         return self.cells_of_heights or self.shape.cells
 
     @property
+    def leaves_states_out(self) -> bool:
+        """Whether a path is scanned at no more states than tell its forces.
+
+        On covered cells, and on a track, which damps what forces are off by: a beam rings with it.
+        """
+        given = self.case.contact.approaches is not None
+        return self.cells_seen == "covered" and isinstance(self.scene.over, Track) and not given
+
+    @property
     def kinds_of_cells(self) -> tuple[str, ...]:
         """Kinds of cells, as in `HalfSpace`, on which its contacts are solved."""
         return tuple(dict.fromkeys((self.shape.cells, self.cells_seen)))
