@@ -1,5 +1,7 @@
 """What a check says that a bearing takes: contacts that are solved, cells at rims, what is compiled."""
 
+import json
+
 import pytest
 
 import asperity
@@ -53,3 +55,31 @@ def test_what_is_told_of_a_law_that_solves_every_step_is_at_most_all_balls_on_bo
     assert touching.min() < touching.max() < BALLS
     _, work = expected(prepare_case(case))
     assert work.solutions == {"direct": work.steps * (int(touching.max()) + BALLS)}
+
+
+@pytest.fixture(scope="module")
+def solved():
+    return asperity.run(BEARING | {"laws": ["table", "areal"], "duration": "50 ms"}, brief=True)
+
+
+def test_a_pit_that_is_solved_strikes_much_as_its_average_under_the_contact(solved):
+    """It is narrower than the contact, and the load is near that for which the average is exact."""
+    found = solved["bearing"]
+    table, areal = found["band_velocity"].values[:, 0]
+    assert table == pytest.approx(areal, rel=0.05)
+    assert abs(table[2] / areal[2] - 1.0) > 1e-6  # it is another computation
+    assert found["lines_found"].values[:, 0].tolist() == [1.0, 1.0]
+
+
+def test_a_result_says_how_cells_at_rims_counted_as_its_plan_does(solved, runs):
+    """A law that sees no heights has none."""
+    seen, blind = (
+        [
+            row["value"]
+            for row in json.loads(tree["scenario"].attrs["numerics"])
+            if row["name"] == "cells at rims"
+        ]
+        for tree in (solved, runs(BEARING))
+    )
+    assert seen == ["covered on the inner raceway", "whole on the outer raceway"]
+    assert blind == []

@@ -104,34 +104,6 @@ def test_a_pit_strikes_by_what_the_static_load_loses_over_it():
     assert np.array(heard) / heard[0] == pytest.approx(np.array(lost) / lost[0], rel=0.3, abs=0.07)
 
 
-@pytest.fixture(scope="module")
-def solved():
-    return asperity.run(BEARING | {"laws": ["table", "areal"], "duration": "50 ms"}, brief=True)
-
-
-def test_a_pit_that_is_solved_strikes_much_as_its_average_under_the_contact(solved):
-    """It is narrower than the contact, and the load is near that for which the average is exact."""
-    found = group(solved)
-    table, areal = found["band_velocity"].values[:, 0]
-    assert table == pytest.approx(areal, rel=0.05)
-    assert abs(table[2] / areal[2] - 1.0) > 1e-6  # it is another computation
-    assert found["lines_found"].values[:, 0].tolist() == [1.0, 1.0]
-
-
-def test_a_result_says_how_cells_at_rims_counted_as_its_plan_does(solved, runs):
-    """A law that sees no heights has none."""
-    seen, blind = (
-        [
-            row["value"]
-            for row in json.loads(tree["scenario"].attrs["numerics"])
-            if row["name"] == "cells at rims"
-        ]
-        for tree in (solved, runs(BEARING))
-    )
-    assert seen == ["covered on the inner raceway", "whole on the outer raceway"]
-    assert blind == []
-
-
 def test_what_a_part_makes_alone_is_told(runs):
     tree = runs(BEARING)
     found = group(tree)

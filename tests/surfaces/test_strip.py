@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from scipy.stats import kstest
 
 from asperity.spectra import psd
-from asperity.surfaces import statistics, synthesis
+from asperity.surfaces import statistics, synthesis, tiles
 from asperity.surfaces import strip as module
 from asperity.surfaces.bands import RangeOfBands
 from asperity.surfaces.heightmap import HeightMap
@@ -424,3 +424,16 @@ def test_a_forked_process_reads_what_it_wrote_whatever_is_written_beside():
     assert process.exitcode == 0
     made.read(0, 2)
     assert made.numbers == [0, 2]
+
+
+def test_random_numbers_that_are_kept_are_those_of_their_place_and_nobody_writes_to_them():
+    """A larger first axis begins with the smaller one, also where it is too large to be kept."""
+    many = tiles.deviates(7, (tiles.KEPT + 1,), 3, 0, 1)
+    few = tiles.deviates(7, (40,), 3, 0, 1)
+    assert np.array_equal(few, many[:40])
+    assert np.array_equal(few, tiles.deviates(7, (40,), 3, 0, 1))
+    for place in ((2, 0, 1), (3, 1, 1), (3, 0, 2)):
+        assert not np.array_equal(few, tiles.deviates(7, (40,), *place))
+    assert not np.array_equal(few, tiles.deviates(8, (40,), 3, 0, 1))
+    with pytest.raises(ValueError, match="read-only"):
+        few[0] = 0.0
