@@ -461,7 +461,7 @@ def waves_with_a_unit(file, samples):
         ("a.npz", lambda file, samples: np.savez(file, signal=samples), 0.6),
         ("a.mat", lambda file, samples: savemat(file, {"signal": samples}), 0.6),
         ("a.wav", waves, 1.6),  # as shares of full scale
-        ("a.wav", waves_with_a_unit, 3.6),  # as numbers of eight bytes, in the unit
+        ("a.wav", waves_with_a_unit, 1.6),  # as numbers of four bytes, in the unit
     ],
 )
 def test_a_signal_of_few_bytes_a_sample_takes_few_times_its_file(name, write, most, monkeypatch):

@@ -89,6 +89,15 @@ def test_states_are_left_out_on_a_rail_alone_and_none_of_those_that_are_given(ow
         assert every == list(range(len(among)))
 
 
+@pytest.mark.parametrize(("kind", "every"), [("wheel-on-rail", 2), ("ball-on-beam", 1)])
+def test_a_plan_leaves_states_out_as_its_run_does(kind, every):
+    states = np.linspace(0.0, 1e-6, reducing.STATES)
+    keys = {"laws": ["table"], "surface": TEXTURES[kind], "contact": FINE[kind] | {"rim_cells": "covered"}}
+    (job,) = scans_of(prepare_case(changed(kind, **keys)), states)["path"]
+    assert len(job.approaches) >= FEWEST
+    np.testing.assert_allclose(np.diff(job.approaches), every * states[1])
+
+
 @pytest.mark.filterwarnings("ignore::asperity.errors.TruncatedContactWarning")  # of the filters, seldom
 def test_a_wheel_over_every_other_state_has_the_levels_of_one_over_all(own_cache, monkeypatch):
     textures = {"surface": TEXTURES["wheel-on-rail"], "contact": FINE["wheel-on-rail"]}

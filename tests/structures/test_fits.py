@@ -14,7 +14,7 @@ from asperity.reduction.texture import StateTexture
 from asperity.rolling.roll import roll_bodies
 from asperity.spectra import psd
 from asperity.structures.body import GRAVITY, Body, Wheel, carriage, chain
-from asperity.structures.modal_fit import vector_fit, warn_of_wide_lines
+from asperity.structures.modal_fit import FittedFractions, partial_fractions, vector_fit, warn_of_wide_lines
 from asperity.structures.receptance_fit import fit_body, fit_structure, receptances_in
 from refusals import refusals
 
@@ -107,6 +107,20 @@ def test_poles_of_rational_functions_are_found():
 
 
 CIRCLE = np.exp(1j * np.linspace(0.01, 3.0, 200))
+
+
+def test_what_fractions_leave_of_columns_is_all_that_least_squares_leave():
+    random = np.random.default_rng(2)
+    poles = np.array([-3.0 + 40.0j, -8.0 + 300.0j, -50.0 + 0.0j])
+    points = 1j * np.linspace(1.0, 400.0, 12)
+    weight = random.uniform(0.5, 2.0, 12)
+    columns = random.normal(size=(24, 3))
+    basis = weight[:, None] * partial_fractions(points, poles)
+    matrix = np.concatenate([basis.real, basis.imag])
+    left = FittedFractions(points, weight, poles).left_of(columns)
+    missed = columns - matrix @ np.linalg.lstsq(matrix, columns)[0]
+    assert left.shape == (24 - 5, 3)
+    assert_allclose(left.T @ left, missed.T @ missed, rtol=1e-9)
 
 
 def test_all_poles_are_stable_even_for_noise():

@@ -54,12 +54,12 @@ def vector_fit(
     right = np.concatenate([weighted.real, weighted.imag], axis=1).T
     best = moved
     least = np.inf
-    fitted = _Fitted(s, weight, moved)
+    fitted = FittedFractions(s, weight, moved)
     for _ in range(iterations):
         moved = _stable(_relocated(fitted, spanning), radius)
         if moved.size == 0 or not np.isfinite(moved).all():
             break
-        fitted = _Fitted(s, weight, moved)
+        fitted = FittedFractions(s, weight, moved)
         error = float(np.linalg.norm(fitted.left_of(right)) / scale) if scale > 0.0 else 0.0
         if error < least:
             best = moved
@@ -112,7 +112,7 @@ def _stacked(matrix: Complex) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class _Fitted:
+class FittedFractions:
     """Partial fractions of some poles, with which weighted responses are fitted by least squares."""
 
     points: Complex
@@ -121,6 +121,7 @@ class _Fitted:
 
     @cached_property
     def basis(self) -> Complex:
+        """Partial fractions (n, p) at the points, not weighted."""
         return partial_fractions(self.points, self.poles)
 
     @cached_property
@@ -136,7 +137,7 @@ class _Fitted:
         return np.asarray(turned[len(scales) :])
 
 
-def _relocated(fitted: _Fitted, spanning: Complex) -> Complex:
+def _relocated(fitted: FittedFractions, spanning: Complex) -> Complex:
     """Zeros of the fitted scaling function: the next poles."""
     poles = fitted.poles
     scaling = np.column_stack([fitted.basis, np.ones(fitted.points.size)])

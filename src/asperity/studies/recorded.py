@@ -204,7 +204,9 @@ def _of_wav(file: Path) -> tuple[float, Any]:
         return float(rate), (values.astype(np.float32) - np.float32(128.0)) / np.float32(128.0)
     full = float(np.iinfo(values.dtype).max) + 1.0 if values.dtype.kind == "i" else 1.0
     if values.dtype.kind == "i" and (scale := told_scale(file)) is not None:
-        return float(rate), values * (scale / _unit_number(file, values.dtype))
+        one = scale / _unit_number(file, values.dtype)
+        # float32 has those of 16 bits in a unit to 1e-7 of themselves
+        return float(rate), values * (np.float32(one) if values.dtype.itemsize <= 2 else one)
     if values.dtype.itemsize <= 2:  # whose shares float32 has to the last bit
         return float(rate), values.astype(np.float32) / np.float32(full)
     return float(rate), values / full
