@@ -35,8 +35,8 @@ class Stepper:
     motion: stepping.Motion
     largest: float  # contact force that makes no sense any more, N
     softest: float  # largest static compliance under a contact on its path, m/N; infinite if nothing holds it
-    displacements: bool = False  # whether those of the sensors are recorded
-    at_contacts: bool = True  # whether approaches and displacements at the contacts are
+    displacements: bool  # whether those of the sensors are recorded
+    at_contacts: bool  # whether approaches and displacements at the contacts are
 
     def __post_init__(self) -> None:
         n = self.course.contacts
