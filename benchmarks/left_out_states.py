@@ -1,0 +1,68 @@
+"""How far the table of a wheel moves its force by the states that are left out of its scan.
+
+    python benchmarks/left_out_states.py            # all cases, in some six minutes of processor time
+    python benchmarks/left_out_states.py template   # those whose names begin so
+
+Each case is rolled by `table` as it is, and with all states; both scan the same positions. Printed are the
+difference of the force in one-third octaves, rms and at most, and the share of the contacts that is left.
+"""
+
+import argparse
+import warnings
+
+import numpy as np
+
+from asperity.case.cases import parse_case, template
+from asperity.running import prepare_case
+from asperity.scenarios import laws
+from asperity.scenes.compute import compute
+
+SHORT = {"duration": "0.4 s"}
+SELF_AFFINE = SHORT | {"surface.spectrum": None, "surface.lateral": None, "surface.level": None}
+CASES = {
+    "template, 56 m/s": {},
+    "template, 30 m/s": {"speed": "30 m/s"},
+    "template, 10 dB louder": {"surface.level": "+10 dB"},
+    "83 m/s, another texture": SHORT | {"speed": "83 m/s", "seed": 2},
+    "40 m/s, another texture": SHORT | {"speed": "40 m/s", "seed": 3},
+    "self-affine, 1 um rms": SELF_AFFINE | {"surface.rms": "1 um"},
+    "self-affine, 3 um rms": SELF_AFFINE | {"surface.rms": "3 um"},
+    "pads that lose little": SHORT | {"track.pad_loss_factor": 0.02},
+}
+
+
+def every_state(approaches, _):
+    """All states, in place of those that tell the force."""
+    return list(range(len(approaches)))
+
+
+def rolled(case, states):
+    """Levels of the force in bands, dB, and how many contacts were solved for them."""
+    laws.states_apart = states
+    computed = compute(prepare_case(case), lambda *_: None)
+    return np.array(computed.force_levels[0]), computed.scan.counts.solved
+
+
+def main():
+    """Roll the cases that are asked for, and print a line for each."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("name", nargs="?", default="", help="how the names of cases begin")
+    asked = parser.parse_args().name
+    warnings.simplefilter("ignore")
+    apart = laws.states_apart
+    for name, changes in CASES.items():
+        if not name.startswith(asked):
+            continue
+        case = parse_case(template("wheel-on-rail")).with_(laws=["table"], **changes)
+        levels, contacts = rolled(case, apart)
+        exact, of_all = rolled(case, every_state)
+        off = levels - exact
+        print(
+            f"{name:26} {np.sqrt(np.mean(off**2)):.3f} dB rms, {np.abs(off).max():.2f} dB at most, "
+            f"{contacts / of_all:.2f} of the contacts",
+            flush=True,
+        )
+
+
+if __name__ == "__main__":
+    main()
