@@ -290,7 +290,7 @@ class Section:
     def _with(self, values: Mapping[str, Any], given_names: frozenset[str]) -> Self:
         """The same keys and sections with other values for some, and names of those that count as given."""
         made = type(self).__new__(type(self))
-        inside = self.keys.keys() | self.sections().keys()
+        inside = self.keys.keys() | self.sections().keys()  # and numbered sections, as fault[2]
         read = {name: each for name, each in vars(self).items() if name in inside or name.endswith("]")}
         made.__dict__.update({**read, **values, "given_names": given_names})
         return made

@@ -27,8 +27,7 @@ FAINT = 0.1
 def median(values: Array) -> float:
     """Median of numbers (n,), none of them NaN: of few, NumPy's takes ten times as long."""
     half = values.size // 2
-    parted = values.copy()
-    parted.partition(half)
+    parted = np.partition(values, half)
     return float(parted[half] if values.size % 2 else 0.5 * (parted[:half].max() + parted[half]))
 
 

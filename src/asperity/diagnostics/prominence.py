@@ -1,6 +1,5 @@
 """How far the lines of a spectrum stand out, and which combs of harmonics they form."""
 
-import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -135,8 +134,7 @@ class Prominence:
     def standardised(self, frequency: Array, highest: float) -> Array:
         """What `at` finds, by the median and deviation of all places up to a highest one."""
         around = self.log_ratio[LOWEST_PLACE : max(int(highest / self.step), LOWEST_PLACE + 8)]
-        variance = around @ around / around.size - (around.sum() / around.size) ** 2
-        return (self.at(frequency) - median(around)) / max(math.sqrt(max(variance, 0.0)), 1e-3)
+        return (self.at(frequency) - median(around)) / max(float(around.std()), 1e-3)
 
     def combs(self, fundamental: Array, least: float = STANDS_OUT) -> Array:
         """How clearly there is a comb of each fundamental (g,), Hz: 0, or the mean logarithm over harmonics.
