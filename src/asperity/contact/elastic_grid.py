@@ -147,7 +147,10 @@ class ElasticGrid:
         """Tangent stiffness where the gap at rims falls with the pressure: its matrix is not symmetric."""
         from scipy.sparse.linalg import LinearOperator, gmres
 
-        own, along, across = self._rims_of(pressure)[0]
+        assert self.sides is not None
+        slopes = np.zeros((3, *self.shape))
+        rims.rim_slopes(contiguous(pressure), *self.sides, slopes)
+        own, along, across = slopes
         inside = np.flatnonzero(free)
         if len(inside) <= FEW:
             return self._stiffness_of_few(free, own, along, across)
@@ -222,15 +225,8 @@ class ElasticGrid:
             return self.softness(edges).covered_cells(pressure, edges.shares)
         if self.cells == "whole":
             return int(np.count_nonzero(pressure))
-        return float(self._rims_of(pressure)[1].sum())
-
-    def _rims_of(self, pressure: Array) -> tuple[Array, Array]:
-        """Derivatives of the gap at rims (3, nx, ny), m/Pa, and covered shares of cells (nx, ny)."""
-        slopes = np.zeros((3, *self.shape))
-        covered = np.zeros(self.shape)
         assert self.sides is not None
-        rims.rim_slopes(contiguous(pressure), *self.sides, slopes, covered)
-        return slopes, covered
+        return rims.cells_covered(contiguous(pressure), *self.sides)
 
 
 def check_edges(edges: Edges, grid: ElasticGrid, shape: tuple[int, int]) -> None:

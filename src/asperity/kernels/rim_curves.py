@@ -5,6 +5,7 @@ other between values that are even in its root. ``benchmarks/cell_rims.py`` comp
 """
 
 import tomllib
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -70,6 +71,12 @@ def curve_rows(values: NDArray, dtype: DTypeLike) -> NDArray:
     rows = aligned(len(both) * width(dtype), dtype)
     rows.reshape(len(both), -1)[:, :EIGHT] = both
     return rows
+
+
+@cache
+def left_rows(dtype: DTypeLike) -> NDArray:
+    """Coefficients of the gap that is left, as `curve_rows` lays them out: not to be written to."""
+    return curve_rows(LEFT, dtype)
 
 
 @compiled(**INNER, **UNCHECKED)

@@ -26,11 +26,10 @@ from asperity.kernels.lanes import EIGHT, aligned, columns, lanes, write_places
 from asperity.kernels.options import CALLED, CONTRACT, INNER, LOOP, REASSOCIATE, UNCHECKED, compiled
 from asperity.kernels.rim_curves import (
     END,
-    LEFT,
     PER_UNIT,
     covered_share,
     cubic,
-    curve_rows,
+    left_rows,
     remaining_gap,
     row_behind,
 )
@@ -99,7 +98,7 @@ class Rims(NamedTuple):
     eights: NDArray  # eight of them in one number
     chunk: NDArray  # room for what is computed of a chunk
     places: NDArray  # (CHUNK,), where its rows of the curves begin
-    curves: NDArray  # from `rim_curves.curve_rows`
+    curves: NDArray  # from `rim_curves.left_rows`
 
 
 def rims(along: float, across: float, size: int, dtype: DTypeLike) -> Rims:
@@ -110,7 +109,7 @@ def rims(along: float, across: float, size: int, dtype: DTypeLike) -> Rims:
         along, across, np.zeros(2, dtype=np.int64), np.zeros(size + EIGHT, dtype=np.uint32),
         aligned(KEPT * CHUNK * chunks, dtype), aligned(size + CHUNK, dtype), aligned(size, dtype),
         eights.view(np.uint8), eights,
-        aligned(NUMBERS * CHUNK, dtype), np.zeros(CHUNK, dtype=np.int32), curve_rows(LEFT, dtype),
+        aligned(NUMBERS * CHUNK, dtype), np.zeros(CHUNK, dtype=np.int32), left_rows(dtype),
     )  # fmt: skip
 
 
@@ -449,22 +448,28 @@ def bend_inside(pressure: NDArray, i: int, j: int, x: float, y: float, slant: fl
     return BEND_SHARE * max(min(loss / slope - BEND_LEFT, MOST_BENT / BEND_SHARE), 0.0)
 
 
+@compiled(**INNER)
+def _steps_beside(pressure: NDArray, i: int, j: int) -> tuple[float, float]:
+    """Differences of the pressure between the neighbours of a cell, along and across, Pa."""
+    nx, ny = pressure.shape
+    x = (pressure[i + 1, j] if i + 1 < nx else 0.0) - (pressure[i - 1, j] if i > 0 else 0.0)
+    y = (pressure[i, j + 1] if j + 1 < ny else 0.0) - (pressure[i, j - 1] if j > 0 else 0.0)
+    return x, y
+
+
 @compiled(**LOOP)
-def rim_slopes(pressure: NDArray, along: float, across: float, slopes: NDArray, covered: NDArray) -> None:
-    """Find how the gap at rims changes with the pressure, and how much of each cell is covered.
+def rim_slopes(pressure: NDArray, along: float, across: float, slopes: NDArray) -> None:
+    """Find how the gap at rims changes with the pressure.
 
     Pressure (nx, ny), Pa; sides of a cell over E*, m/Pa. `slopes` (3, nx, ny), zeros, receives derivatives,
-    m/Pa: by the pressure of the cell itself, by the difference of its neighbours along, and across; `covered`
-    (nx, ny) shares.
+    m/Pa: by the pressure of the cell itself, by the difference of its neighbours along, and across.
     """
     nx, ny = pressure.shape
     elongation = (along / across) ** 2
     for i in range(nx):
         for j in range(ny):
             p = pressure[i, j]
-            covered[i, j] = 1.0 if p > 0.0 else 0.0
-            x = (pressure[i + 1, j] if i + 1 < nx else 0.0) - (pressure[i - 1, j] if i > 0 else 0.0)
-            y = (pressure[i, j + 1] if j + 1 < ny else 0.0) - (pressure[i, j - 1] if j > 0 else 0.0)
+            x, y = _steps_beside(pressure, i, j)
             if p > 0.0 and p * p < END**4 * (x * x + y * y):
                 step, _, width, ratio, slant = _at_rim(p, abs(x), abs(y), along, elongation)
                 left, slope, turn = remaining_gap(ratio, slant)
@@ -477,4 +482,23 @@ def rim_slopes(pressure: NDArray, along: float, across: float, slopes: NDArray, 
                 slopes[1, i, j] = x * (by_step - by_width) + np.sign(x) * (by_far if wide else by_near)
                 slopes[2, i, j] = y * (by_step - by_width * elongation)
                 slopes[2, i, j] += np.sign(y) * (by_near if wide else by_far)
-                covered[i, j] = covered_share(ratio, slant, bend_inside(pressure, i, j, x, y, slant))
+
+
+@compiled(**LOOP)
+def cells_covered(pressure: NDArray, along: float, across: float) -> float:
+    """Number of cells in contact, those at rims as far as they are covered; arguments as in `rim_slopes`."""
+    nx, ny = pressure.shape
+    elongation = (along / across) ** 2
+    number = 0.0
+    for i in range(nx):
+        for j in range(ny):
+            p = pressure[i, j]
+            if not p > 0.0:
+                continue
+            x, y = _steps_beside(pressure, i, j)
+            if p * p < END**4 * (x * x + y * y):
+                _, _, _, ratio, slant = _at_rim(p, abs(x), abs(y), along, elongation)
+                number += covered_share(ratio, slant, bend_inside(pressure, i, j, x, y, slant))
+            else:
+                number += 1.0
+    return number
