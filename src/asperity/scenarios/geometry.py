@@ -220,8 +220,8 @@ def _check_grid(cells: int, spacing: float, axes: tuple[float, float], load: flo
     if spacing > small / 8:
         CoarseSamplingWarning.warn(
             f"contact.spacing = {rounded(spacing * 1e6)} µm is coarser than an eighth of the contact radius "
-            f"({rounded(small * 1e6)} µm under {in_newtons(load)}): forces carry an error of some per cent. "
-            "Refine the spacing."
+            f"({rounded(small * 1e6)} µm under {in_newtons(load)}): the stiffness of whole cells is some "
+            "per cent off. Refine the spacing."
         )
 
 
