@@ -2,6 +2,7 @@
 
     python benchmarks/cell_edges.py            # the curves, as they stand in contact/edges.py
     python benchmarks/cell_edges.py --check    # against flat punches and finer grids
+    python benchmarks/cell_edges.py --faults   # balls over pits and spalls, against cells a quarter as large
 
 Near the straight edge of what carries, the pressure on an elastic half-space is A/√d at a distance d from
 it, whatever presses, and displaces all that carries alike: by U; beyond the edge by 4A/E* √|d| less. On
@@ -35,6 +36,8 @@ from asperity import HalfSpace
 from asperity.contact.edges import KNOTS, PER_UNIT, SLANTS
 from asperity.kernels.influence import cell_displacement
 from asperity.surfaces.edges import FIRST, Edges
+from asperity.surfaces.faults import PARTS as FAULT_PARTS
+from asperity.surfaces.faults import Fault
 
 AROUND, PARTS = 15, 21
 """Cells about one, whose pressure is taken part by part, and parts of a cell; both odd."""
@@ -165,7 +168,54 @@ def check():
             )
 
 
+SLOPES = {
+    "upright": ((280e-6, 0.0), (50e-6, 0.0), (5e-6, 0.0), (2e-6, 0.0), (0.5e-6, 0.0)),
+    "sloped": ((280e-6, 20e-6), (280e-6, 60e-6), (50e-6, 60e-6), (10e-6, 60e-6)),
+    "gentle": ((5e-6, 60e-6), (5e-6, 40e-6), (3e-6, 40e-6)),
+}
+"""Depths of faults, and lengths over which they fall to their floor, m."""
+
+
+def force_over(fault, cell, middle, place, sharp=True):
+    """Force, N, of a steel ball of 10 mm, pressed by 4 µm beside the middle of a fault on square cells, m."""
+    count = 2 * round(0.36e-3 / cell) + 1
+    at = (np.arange(count) - count // 2) * cell
+    ball = np.add.outer((at - place) ** 2, at**2) / 20e-3
+    along, across = at[:, None] - middle[0], at[None, :] - middle[1]
+    heights, edges = fault.heights(along, across), None
+    if sharp:
+        outline = fault.outline(along, across)
+        parts = ((np.arange(FAULT_PARTS) + 0.5) / FAULT_PARTS - 0.5) * cell
+        depth = -np.mean([fault.heights(along + i, across + j) for i in parts for j in parts], axis=0)
+        edges = Edges(*outline, depth, (cell, cell))
+        heights = np.where(edges.sound, 0.0, heights)
+    space = HalfSpace(ball.shape, cell, 115e9)
+    return space.solve(ball - heights, approach=4e-6, edges=edges).force
+
+
+def check_faults(cell=30e-6, draws=8):
+    """Print how far forces over pits and spalls of 0.30 to 0.40 mm are from those of finer cells."""
+    rng = np.random.default_rng(99)
+    print("| fall to the floor | fault | edges within cells: rms, % | most | whole cells: most |")
+    print("|---|---|---|---|---|")
+    for name, shapes in SLOPES.items():
+        for kind in ("spall", "pit"):
+            errors = []
+            for depth, edge in shapes:
+                for draw in range(draws):
+                    middle, place = (rng.random(2) - 0.5) * cell, (draw % 2) * rng.uniform(0.0, 0.2e-3)
+                    for size in np.arange(0.30e-3, 0.405e-3, 0.02e-3):
+                        fault = Fault(kind, length=size, depth=depth, edge=edge)
+                        fine = force_over(fault, cell / 4, middle, place)
+                        found = [force_over(fault, cell, middle, place, sharp) for sharp in (True, False)]
+                        errors.append(100.0 * (np.array(found) / fine - 1.0))
+            most, rms = np.abs(errors).max(axis=0), math.sqrt(np.mean(np.square(errors), axis=0)[0])
+            print(f"| {name} | {kind} | {rms:.2f} | {most[0]:.2f} | {most[1]:.1f} |", flush=True)
+
+
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--check", action="store_true")
-    check() if parser.parse_args().check else print_curves()
+    chosen = parser.add_mutually_exclusive_group()
+    for name, function in {"check": check, "faults": check_faults}.items():
+        chosen.add_argument(f"--{name}", dest="work", action="store_const", const=function)
+    (parser.parse_args().work or print_curves)()
