@@ -5,6 +5,7 @@
     python benchmarks/cell_rims.py --rough    # rough balls against grids four times as fine
     python benchmarks/cell_rims.py --choice   # where covered cells serve better: `SMOOTH`
     python benchmarks/cell_rims.py --fresh    # likewise, textures that nothing was chosen by
+    python benchmarks/cell_rims.py --caps     # smooth balls with a hardness, against finer grids
     python benchmarks/cell_rims.py --raceways # a ball in the groove of a 6205, against finer grids
     python benchmarks/cell_rims.py --cost     # time and iterations against those of whole cells, in turn
 
@@ -315,14 +316,41 @@ def check_fresh():
     check_choice(range(201, 209))
 
 
-def forces_of(gap, cells, width, approaches):
+def forces_of(gap, cells, width, approaches, hardness=None):
     """Forces at approaches of a gap on cells that fill a width."""
-    space, start, forces = HalfSpace(gap.shape, width / len(gap), 1.0, cells=cells), None, []
+    space, start, forces = HalfSpace(gap.shape, width / len(gap), 1.0, hardness, cells=cells), None, []
     for approach in approaches:
         solved = space.solve(np.ascontiguousarray(gap), approach=approach, start=start, rtol=1e-7)
         start = solved.pressure
         forces.append(solved.force)
     return np.array(forces)
+
+
+def check_caps(finer=8):
+    """Print force and stiffness of smooth balls whose pressure is capped, against finer covered cells."""
+    head = "| hardness / largest pressure | cells in the half-width "
+    print(head + "| k, rms and most, %: covered | whole | F, rms, %: covered | whole |")
+    print(6 * "|---" + "|")
+    for share in (1.2, 0.86, 0.79, 0.63, 0.47):
+        for across in (6, 9, 18):
+            k, force = {"covered": [], "whole": []}, {"covered": [], "whole": []}
+            for offset in OFFSETS[::3]:
+                fine = forces_of_capped(share, across, offset, "covered", finer)
+                for kind in k:
+                    found = forces_of_capped(share, across, offset, kind)
+                    k[kind].append(100.0 * (np.diff(found) / np.diff(fine) - 1.0))
+                    force[kind].append(100.0 * (found / fine - 1.0))
+            columns = [f"{np.sqrt(np.mean(np.square(v))):.2f}, {np.abs(v).max():.1f}" for v in k.values()]
+            columns += [f"{np.sqrt(np.mean(np.square(v))):.3f}" for v in force.values()]
+            print(f"| {share} | {across} | " + " | ".join(columns) + " |", flush=True)
+
+
+def forces_of_capped(share, across, offset, cells, parts=1):
+    """Forces of a ball of so many cells, each in parts, capped at a share of its largest pressure."""
+    side, points = 1.0 / (parts * across), 2 * math.ceil(1.6 * across * parts) + 1
+    x, y = ((np.arange(points) - points // 2) * side - o / across for o in offset)
+    gap = 0.5 * np.add.outer(x**2, y**2) + (side**2 / 12.0 if cells == "covered" else 0.0)
+    return forces_of(gap, cells, points * side, np.linspace(0.9, 1.1, 25), share * 2.0 / math.pi)
 
 
 def check_raceways(positions=6):
@@ -399,7 +427,7 @@ def cost(rounds=21):
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     work = {"check": check, "rough": check_rough, "choice": check_choice}
-    work |= {"fresh": check_fresh, "raceways": check_raceways, "cost": cost}
+    work |= {"fresh": check_fresh, "caps": check_caps, "raceways": check_raceways, "cost": cost}
     chosen = parser.add_mutually_exclusive_group()
     for name, function in work.items():
         chosen.add_argument(f"--{name}", dest="work", action="store_const", const=function)
