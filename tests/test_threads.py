@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
 
+import asperity
 from asperity import HalfSpace
 from asperity.errors import InputError
 from asperity.threads import in_order, one_thread_in_linear_algebra, processors, refuse_to_go_on, thread_count
@@ -79,3 +80,11 @@ def test_contacts_of_a_scan_are_such_pieces(monkeypatch):
     body = (x[:, None] ** 2 + x**2) / (2 * 0.025)
     HalfSpace((17, 17), 1e-5, 115e9).scan(np.zeros((80, 17)), body, [1e-7])
     assert len(looks) >= 4
+
+
+def test_a_run_is_a_task_that_looks_up_at_each_chunk(monkeypatch):
+    looks = []
+    monkeypatch.setattr("asperity.rolling.stepper.refuse_to_go_on", lambda: looks.append(1))
+    case = {"kind": "ball-on-beam", "laws": ["hertz"], "surface": {"smooth": True}}
+    asperity.run(case)
+    assert len(looks) >= 2

@@ -74,7 +74,7 @@ def curve_rows(values: NDArray, dtype: DTypeLike) -> NDArray:
 
 
 @cache
-def left_rows(dtype: DTypeLike) -> NDArray:
+def left_rows(dtype: np.dtype) -> NDArray:
     """Coefficients of the gap that is left, as `curve_rows` lays them out: not to be written to."""
     return curve_rows(LEFT, dtype)
 

@@ -109,7 +109,7 @@ def rims(along: float, across: float, size: int, dtype: DTypeLike) -> Rims:
         along, across, np.zeros(2, dtype=np.int64), np.zeros(size + EIGHT, dtype=np.uint32),
         aligned(KEPT * CHUNK * chunks, dtype), aligned(size + CHUNK, dtype), aligned(size, dtype),
         eights.view(np.uint8), eights,
-        aligned(NUMBERS * CHUNK, dtype), np.zeros(CHUNK, dtype=np.int32), left_rows(dtype),
+        aligned(NUMBERS * CHUNK, dtype), np.zeros(CHUNK, dtype=np.int32), left_rows(np.dtype(dtype)),
     )  # fmt: skip
 
 

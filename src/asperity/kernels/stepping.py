@@ -514,7 +514,7 @@ def roll(sweep, solve, system, motion, record, laws, shapes, rates, offset, stop
     return True
 
 
-@compiled(**LOOP)
+@compiled(**LOOP, nogil=True)
 def roll_prepared(system, motion, record, laws, shapes, rates, offset, stop, largest):  # type: ignore[no-untyped-def]
     """Roll compiled laws, as `roll`."""
     return roll(

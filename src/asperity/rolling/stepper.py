@@ -14,6 +14,7 @@ from asperity.laws.spec import SettlingLaw, SteppedLaw, settles
 from asperity.progress import Progress
 from asperity.rolling.course import Course, in_contact, laid_over, stacked, steps_beyond
 from asperity.store import Checkpoint
+from asperity.threads import refuse_to_go_on
 from asperity.written_numbers import rounded
 
 Free = tuple[float, float, float, float]
@@ -97,6 +98,7 @@ class Stepper:
         state = self._state()
         try:
             while motion.counts[0] < total:
+                refuse_to_go_on()
                 done = int(motion.counts[0])
                 if not self._advance(done + STEPPED_BLOCK if self.stepped else total, self.largest):
                     raise self._ran_away()

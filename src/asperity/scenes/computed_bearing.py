@@ -14,7 +14,7 @@ from asperity.errors import PhysicsWarning
 from asperity.laws import Need, spec_of
 from asperity.laws.film import WithFilm
 from asperity.laws.tilted import Tilted
-from asperity.progress import Progress
+from asperity.progress import Progress, of_each
 from asperity.rolling.bearing import (
     BearingRings,
     RolledBearing,
@@ -38,6 +38,7 @@ from asperity.speeds import SpeedCourse
 from asperity.store import Store
 from asperity.structures.ball_bearing import BallBearing
 from asperity.structures.ring import Ring
+from asperity.threads import in_order
 
 DAMPED = 0.05
 """Share by which the force of a contact that is looked up may lie beside what its damping leaves of it."""
@@ -146,7 +147,7 @@ def _rolled(
 def rolled_alone(computed: ComputedBearing, progress: Progress) -> dict[str, Array]:
     """Accelerations (sensors, n), m/s², by `BY_PARTS` with what is on each part alone, and on none.
 
-    None at all if nothing is on any.
+    None at all if nothing is on any. The runs are independent, and made on threads.
     """
     case = computed.case
     textured = [key for key in map(case.called, ON) if getattr(case, key).given()]
@@ -155,18 +156,20 @@ def rolled_alone(computed: ComputedBearing, progress: Progress) -> dict[str, Arr
     names = ["perfect surfaces", *(named_on(case, key) for key in textured)]
     if len(case.faults) > 1:
         names[-1] = "the faults"
-    found = {}
-    for name, kept in zip(names, (None, *textured), strict=True):
-        others = case.with_(laws=[BY_PARTS], **{key: None for key in textured if key != kept})
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", PhysicsWarning)  # of the whole bearing it has been warned
-            part = prepare_bearing(others)
-            if kept is None and _stands_still(part, progress):
-                found[name] = np.zeros_like(computed.first.acceleration)
-            else:
-                ((_, run),) = _rolled(part, progress)
-                found[name] = thinned(run.steadied().acceleration, case.steps_per_sample)
-    return found
+    kept = (None, *textured)
+    told = of_each(progress, len(names))
+
+    def alone(part: int) -> Array:
+        others = {key: None for key in textured if key != kept[part]}
+        prepared = prepare_bearing(case.with_(laws=[BY_PARTS], **others))
+        if kept[part] is None and _stands_still(prepared, told[part]):
+            return np.zeros_like(computed.first.acceleration)
+        ((_, run),) = _rolled(prepared, told[part])
+        return thinned(run.steadied().acceleration, case.steps_per_sample)
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", PhysicsWarning)  # of the whole bearing it has been warned
+        return dict(zip(names, in_order(alone, range(len(names))), strict=True))
 
 
 def _stands_still(prepared: PreparedBearing, progress: Progress) -> bool:
