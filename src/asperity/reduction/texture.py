@@ -79,6 +79,8 @@ def along_path(what: str, values: Array, start: float, spacing: float, positions
     The rows are sampled at ``start + spacing * arange(m)``; `what` they are is for the message.
     """
     index = grid_index(what, values.shape[1], start, spacing, positions)
+    if not values.any():  # as on perfect surfaces
+        return np.zeros((len(index), len(values)))
     return splines_along(np.ascontiguousarray(values, dtype=float), index)
 
 
