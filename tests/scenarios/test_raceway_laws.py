@@ -46,7 +46,7 @@ def solved(heights, approach, cells=(16, 40)):
 
 def test_smooth_raceway_is_solved_once_and_is_hertz():
     on = OnRaceway(CONTACT, raceway_on(CONTACT, LOAD, 23.4 * MM), LOAD)
-    assert on.around.counts.solved == len(on.approaches)
+    assert on.scanned_in(slice(None)).counts.solved == len(on.approaches)
     assert len(on.positions) > 15000
     law = laws_on(on.surface)
     for share, name in product((0.1, 0.5, 1.0, 3.0, 8.0), ALL):
@@ -228,7 +228,7 @@ def test_pit_narrower_than_the_contact_takes_a_part_of_it_away():
         law, middle = laws_on(on.surface), np.pi * MM
     with pytest.warns(OutOfRangeWarning, match="At a fault areal holds for .* under 68 N; else it has 17 N"):
         laws_on(on.surface, "areal")
-    assert 0 < on.around.counts.solved < 110 * len(on.approaches)  # of 720
+    assert 0 < on.scanned_in(slice(None)).counts.solved < 110 * len(on.approaches)  # of 720
     for away, approach in product((0.0, 0.07 * MM, 0.12 * MM), (APPROACH, CONTACT.approach(4 * LOAD))):
         exact = solved(lambda x, y, x0=away: -0.28 * MM * (np.hypot(x + x0, y) < 0.09 * MM), approach)
         found = force(law["table"], [middle + away, middle - away], approach)

@@ -246,6 +246,8 @@ class OnRaceway:
 
         By so much less is the approach there than on the smooth raceway.
         """
+        if not self.surface.damaged.any():
+            return np.zeros(self.rows)
         rtol = rtol_for(self.accuracy)
         start = None
         smooth = at_load(self.space, self.shape.body, self.load, None, rtol).approach
@@ -303,10 +305,10 @@ class OnRaceway:
         places = [self.scanned[row : row + len(self.shape.body)] - plane for row, plane in chosen]
         return reducing.chosen_states(places, self.shape, self.space)
 
-    @property
-    def around(self) -> ScannedForces:
-        """Forces (states, positions) once around, in all states."""
-        return self.scanned_in(slice(0, len(self.approaches)))
+    @cached_property
+    def _pressed(self) -> Array:
+        """Roughness and faults on the rows of `scanned`, m, as laws press them that see heights."""
+        return self.pressed(self.surface.heights + self.surface.faults, len(self.shape.body) // 2)
 
     def scanned_in(self, states: slice) -> ScannedForces:
         """Forces (states, positions) once around in some states, each scanned for itself.
@@ -314,19 +316,17 @@ class OnRaceway:
         Where nothing is in the window they are solved once.
         """
         window, lines = self.shape.body.shape
-        heights = self.pressed(self.surface.heights + self.surface.faults, window // 2)
         space = self.seen.half_space(self.hardness)
         stride = self.scanned_stride
         step = stride // self.stride
         new = self._met(self.surface.heights.astype(bool) | self.surface.damaged)[::step]
         planes = self.planes[::step]
-        alike = np.zeros((window, lines))
         runs: list[tuple[Any, Array, Array, Edges | None]] = []
         if not new.all():
-            runs.append((~new, alike, np.zeros(1), None))
+            runs.append((~new, np.zeros((window, lines)), np.zeros(1), None))
         for first, stop in np.flatnonzero(np.diff(new, prepend=False, append=False)).reshape(-1, 2):
             rows = slice(first * stride, (stop - 1) * stride + window)
-            runs.append((slice(first, stop), heights[rows], planes[first:stop], self._edges_in(rows)))
+            runs.append((slice(first, stop), self._pressed[rows], planes[first:stop], self._edges_in(rows)))
         approaches = self.approaches[states]
         counts = list[scan.Counts]()
         single = False
