@@ -84,7 +84,7 @@ class Course:
                 if isinstance(structure, RailBetween):
                     continue
                 seen, slopes, rate = _seen_along(structure, side.trajectory, steps)
-                signs = np.broadcast_to(side.sign, seen.shape[1:]).astype(float)
+                signs = np.full(seen.shape[1:], side.sign, dtype=float)
                 where = side.structure in written, k, first[side.structure]
                 write_seen(seen, signs, np.ones(1), *where, shapes)
                 write_seen(slopes, signs, rate, *where, rates)
