@@ -256,6 +256,7 @@ def peak(work, rows):
 
 
 def test_lines_of_a_path_are_made_in_pieces(monkeypatch):
+    monkeypatch.setenv("ASPERITY_THREADS", "1")  # each holds a piece
     monkeypatch.setattr("asperity.reduction.texture.PIECE", 500)
     monkeypatch.setattr("asperity.contact.scan.TOUCHED", 500)
     given_ = (DX, DX), [0.0, 1e-6], [(20e-6, 20e-6), (30e-6, 35e-6)]

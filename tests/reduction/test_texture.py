@@ -6,7 +6,8 @@ from numpy.testing import assert_allclose
 
 from asperity.errors import InputError
 from asperity.reduction.texture import LongConvolution, StateTexture, areal_texture, punch_weights
-from asperity.surfaces.strip import Rows
+from asperity.surfaces.strip import Fields, Rows
+from asperity.surfaces.synthesis import long_strip_from_bands
 from refusals import refusals
 
 
@@ -78,6 +79,22 @@ def test_of_what_is_alike_all_across_one_line_is_averaged_and_no_other():
     for heights in (alike, begins_alike, np.zeros((300, 31))):
         found, expected = (areal_texture(each, *given_).heights for each in (heights, Rows(heights)))
         assert_allclose(found, expected, atol=1e-13)
+
+
+def test_any_number_of_threads_averages_a_drawn_strip_to_the_same_digits(monkeypatch):
+    monkeypatch.setattr("asperity.reduction.texture.PIECE", 300)
+    monkeypatch.setattr("asperity.surfaces.strip.PIECE", 250)
+    found = []
+    for threads in ("1", "2", "5"):
+        monkeypatch.setenv("ASPERITY_THREADS", threads)
+        monkeypatch.setattr("asperity.surfaces.strip.pieces", Fields())
+        monkeypatch.setattr("asperity.surfaces.strip.tiles", Fields(fewest=24))
+        drawn = long_strip_from_bands(
+            (3000, 15), (2e-3, 2e-3), [0.1, 0.05, 0.025], [10.0, 5.0, 0.0], seed=2, before=70
+        )
+        texture = areal_texture(drawn, drawn.spacing, [0.0, 1e-6], [(12e-3, 9e-3), (5e-3, 7e-3)])
+        found.append(texture.heights.tobytes())
+    assert found[1:] == found[:1] * 2
 
 
 def strip(rows, columns, *axes):

@@ -5,6 +5,7 @@ import multiprocessing
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from threading import Barrier
 from unittest.mock import Mock
 
 import numpy as np
@@ -246,9 +247,9 @@ def test_pieces_belong_to_places_on_the_grid(monkeypatch):
     made, make = [], module.heights_at
     monkeypatch.setattr(module, "heights_at", lambda *each: made.append(len(each[1])) or make(*each))
     first = bands(5000, before=500, seed=78).rows(0, 5000)
-    assert made == [500, module.PIECE, module.PIECE, 4500 - 2 * module.PIECE]
+    assert made == [4500 - 2 * module.PIECE, module.PIECE, module.PIECE, 500]
     second = bands(5000, before=600, seed=78).rows(0, 5000)
-    assert made[4:] == [600, 4400 - 2 * module.PIECE]  # those between are there
+    assert made[4:] == [4400 - 2 * module.PIECE, 600]  # those between are there
     assert np.array_equal(second[100:], first[:4900])
     drawn = bands(5000, before=500, seed=78)
     closer = replace(drawn, spacing=(drawn.spacing[0], 0.5 * drawn.spacing[1])).rows(0, 5000)
@@ -331,6 +332,25 @@ def test_threads_read_beside_each_other():
     with ThreadPoolExecutor(6) as threads:
         list(threads.map(lambda _: made.read(*30 * (0, 1, 2)), range(6)))
     assert sorted(made.numbers) == [0, 1, 2]
+
+
+def test_threads_make_different_fields_at_once():
+    fields, both = Fields(), Barrier(2)
+
+    def make(number):
+        both.wait(60)  # until the other one is in the making
+        return np.full((100, 3), float(number))
+
+    with ThreadPoolExecutor(2) as threads:
+        found = threads.map(lambda number: fields.rows(number, lambda: make(number))[0, 0], (1, 2))
+        assert list(found) == [1.0, 2.0]
+
+
+def test_a_field_whose_making_fails_is_made_by_the_next_who_wants_it():
+    fields = Fields()
+    with pytest.raises(ZeroDivisionError):
+        fields.rows(0, lambda: np.zeros((100, 3)) / (1 // 0))
+    assert fields.rows(0, lambda: np.ones((100, 3)))[0, 0] == 1.0
 
 
 @pytest.fixture(scope="module")

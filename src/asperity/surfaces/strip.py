@@ -26,12 +26,14 @@ PIECE = 2**11
 class Fields:
     """Fields (rows, ny) by their names, each made once; in memory where no temporary file can be written.
 
+    Threads make different ones at once, and who wants one that another thread makes waits for it.
     With `fewest` they are in memory alone, and so many are kept whatever their size. A process that is forked
     reads what it has inherited, and writes into a file of its own.
     """
 
     def __init__(self, fewest: int | None = None) -> None:
-        self._lock = threading.Lock()
+        self._changed = threading.Condition()
+        self._making = set[Hashable]()  # names of those that a thread makes
         self._in_memory = fewest is not None
         self._fewest = FEWEST if fewest is None else fewest
         self._held: dict[Hashable, Array | tuple[int, tuple[int, ...]]] = {}  # or offset in bytes, and shape
@@ -46,15 +48,28 @@ class Fields:
 
         They take memory for as long as they are held.
         """
-        with self._lock:
-            if name not in self._held:
-                self._put(name, make())
-            held = self._held[name]
-            if isinstance(held, np.ndarray):
-                return held
-            assert self._file is not None
-            # mapped: a position in the file would be shared with forked processes
-            return np.memmap(self._file, np.float64, "r", *held)
+        with self._changed:
+            self._changed.wait_for(lambda: name not in self._making)
+            if name in self._held:
+                return self._read(name)
+            self._making.add(name)
+        try:
+            heights = make()  # others are made meanwhile
+            with self._changed:
+                self._put(name, heights)
+                return self._read(name)
+        finally:
+            with self._changed:
+                self._making.remove(name)
+                self._changed.notify_all()
+
+    def _read(self, name: Hashable) -> Array:
+        held = self._held[name]
+        if isinstance(held, np.ndarray):
+            return held
+        assert self._file is not None
+        # mapped: a position in the file would be shared with forked processes
+        return np.memmap(self._file, np.float64, "r", *held)
 
     def _put(self, name: Hashable, heights: Array) -> None:
         size = heights.nbytes
@@ -155,10 +170,10 @@ def joined_pieces(
     start, stop = rows
     heights = np.empty((max(stop - start, 0), lines))
     while start < stop:
-        begin, end = piece(start)
-        upto = min(stop, end)
-        heights[start - rows[0] : upto - rows[0]] = made(begin, end)[start - begin : upto - begin]
-        start = upto
+        begin, end = piece(stop - 1)  # the last first: threads that read one behind another each make one
+        since = max(start, begin)
+        heights[since - start : stop - start] = made(begin, end)[since - begin : stop - begin]
+        stop = since
     return heights
 
 
