@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from asperity import progress as module
-from asperity.progress import duration, of_each, progress_bar, which_of
+from asperity.progress import duration, progress_bar, which_of
 from asperity.terminal import Manner, speaking
 
 
@@ -164,17 +164,3 @@ def test_many_runs_of_a_kind_have_one_bar_that_says_which_it_is():
         "run 2 of at most 9: scan",
         "run 2 of at most 9: roll",
     ]
-
-
-def test_runs_at_once_are_told_as_one_piece_of_work():
-    told = []
-    first, second = of_each(lambda *step: told.append(step), 2)
-    first(25, 100, "rolling")
-    second(50, 100, "rolling")
-    first(100, 100, "rolling")
-    second(100, 100, "rolling")
-    assert told == [(done, 200, "rolling") for done in (25, 75, 150, 200)]
-
-
-def test_runs_at_once_without_progress_tell_nothing():
-    assert [run(1, 2, "rolling") for run in of_each(None, 3)] == [None] * 3

@@ -7,7 +7,6 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import closing, contextmanager
-from functools import partial
 from html import escape
 from importlib import import_module
 from typing import TextIO, TypeVar
@@ -54,21 +53,6 @@ def counted(
         done += steps(result)
         tell(done, total, message)
         yield result
-
-
-def of_each(progress: Progress | None, count: int) -> list[Progress]:
-    """Progress of each of so many runs, on threads of their own, that is told as one piece of work."""
-    if progress is None:
-        return [lambda done, total, message: None] * count
-    shares = [0.0] * count
-    one_at_a_time = threading.Lock()
-
-    def tell(run: int, done: int, total: int, message: str) -> None:
-        with one_at_a_time:
-            shares[run] = done / total
-            progress(round(sum(shares) * total), count * total, message)
-
-    return [partial(tell, run) for run in range(count)]
 
 
 class Compilation:

@@ -14,7 +14,7 @@ from asperity.errors import PhysicsWarning
 from asperity.laws import Need, spec_of
 from asperity.laws.film import WithFilm
 from asperity.laws.tilted import Tilted
-from asperity.progress import Progress, of_each
+from asperity.progress import Progress, counted
 from asperity.rolling.bearing import (
     BearingRings,
     RolledBearing,
@@ -88,7 +88,7 @@ def compute_bearing(prepared: PreparedBearing, progress: Progress) -> ComputedBe
 
 
 def _rolled(
-    prepared: PreparedBearing, progress: Progress, share: float = 1.0
+    prepared: PreparedBearing, progress: Progress | None = None, share: float = 1.0
 ) -> Iterator[tuple[str, RolledBearing]]:
     """The bearing as each law rolls it, at all time steps.
 
@@ -157,22 +157,22 @@ def rolled_alone(computed: ComputedBearing, progress: Progress) -> dict[str, Arr
     if len(case.faults) > 1:
         names[-1] = "the faults"
     kept = (None, *textured)
-    told = of_each(progress, len(names))
 
     def alone(part: int) -> Array:
         others = {key: None for key in textured if key != kept[part]}
         prepared = prepare_bearing(case.with_(laws=[BY_PARTS], **others))
-        if kept[part] is None and _stands_still(prepared, told[part]):
+        if kept[part] is None and _stands_still(prepared):
             return np.zeros_like(computed.first.acceleration)
-        ((_, run),) = _rolled(prepared, told[part])
+        ((_, run),) = _rolled(prepared)
         return thinned(run.steadied().acceleration, case.steps_per_sample)
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", PhysicsWarning)  # of the whole bearing it has been warned
-        return dict(zip(names, in_order(alone, range(len(names))), strict=True))
+        runs = counted(in_order(alone, range(len(names))), len(names), "rolling with parts alone", progress)
+        return dict(zip(names, runs, strict=True))
 
 
-def _stands_still(prepared: PreparedBearing, progress: Progress) -> bool:
+def _stands_still(prepared: PreparedBearing) -> bool:
     """Whether nothing vibrates in a bearing of perfect surfaces, as one turn of the cage shows.
 
     All that happens there happens again in each turn at a steady speed. It is asked where all balls are
@@ -185,7 +185,7 @@ def _stands_still(prepared: PreparedBearing, progress: Progress) -> bool:
     if unlike or isinstance(case.speed, SpeedCourse) or turn >= case.duration:
         return False
     share = (case.settling + turn) / (case.settling + case.duration)
-    ((_, run),) = _rolled(prepared, progress, share)
+    ((_, run),) = _rolled(prepared, share=share)
     return not run.vibrates
 
 
