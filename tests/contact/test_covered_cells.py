@@ -273,9 +273,11 @@ def rough(shape, spacing, height=0.02):
     return 0.5 * np.add.outer(x**2, y**2) + height * waves
 
 
-def test_the_tangent_is_the_central_difference():
+@pytest.mark.parametrize("hardness", [None, 0.3, 0.2])
+def test_the_tangent_is_the_central_difference(hardness):
     shape, spacing, step = (26, 22), 0.11, 1e-6
-    half_space, gap = HalfSpace(shape, spacing, 1.0, cells="covered"), rough(shape, spacing)
+    half_space = HalfSpace(shape, spacing, 1.0, hardness, cells="covered")
+    gap = rough(shape, spacing)
     contact = half_space.solve(gap, approach=0.4, rtol=1e-12)
     plus, minus = (half_space.solve(gap, approach=0.4 + s, rtol=1e-13) for s in (step, -step))
     assert contact.stiffness == pytest.approx((plus.force - minus.force) / (2.0 * step), rel=1e-5)
@@ -310,6 +312,21 @@ def test_a_cap_is_kept_and_rims_still_count():
     assert contact.converged
     assert contact.pressure.max() == 0.45
     assert contact.force == pytest.approx(reference.force, rel=5e-3)
+
+
+@pytest.mark.parametrize(("share", "largest"), [(0.86, 0.003), (0.79, 0.004), (0.63, 0.008)])
+def test_the_stiffness_has_no_steps_as_cells_begin_to_flow(share, largest):
+    """Against whole cells a sixth as large, whose own steps are small."""
+
+    def quotients(across, cells, count=13):
+        half_space, gap = ball_on_cells(across, (0.3, 0.1), cells=cells, hardness=share * 2.0 / math.pi)
+        approaches = np.linspace(0.9, 1.1, count)
+        return np.diff([half_space.solve(gap, approach=d, rtol=1e-7).force for d in approaches])
+
+    fine = quotients(54, "whole")
+    covered, whole = (np.abs(quotients(9, cells) / fine - 1.0).max() for cells in ("covered", "whole"))
+    assert covered < largest
+    assert whole > 2.0 * covered
 
 
 def test_no_step_in_the_force_as_cells_enter():

@@ -149,7 +149,7 @@ class ElasticGrid:
 
         assert self.sides is not None
         slopes = np.zeros((3, *self.shape))
-        rims.rim_slopes(contiguous(pressure), *self.sides, slopes)
+        rims.rim_slopes(contiguous(pressure), *self.sides, self.pressure_cap, slopes)
         own, along, across = slopes
         inside = np.flatnonzero(free)
         if len(inside) <= FEW:

@@ -473,6 +473,6 @@ def solve(
         if looks_ahead:
             _complete(b, missing / curvature, cap)
         sink_by_share(b, edges, share)
-        set_rims(b, rims, level, taps[0])
+        set_rims(b, rims, level, taps[0], cap)
         yielded += share * further
     return iteration, moving, settled

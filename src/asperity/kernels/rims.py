@@ -9,6 +9,10 @@ function of p/S and of the slant, times S = √(Δₓp² + Δᵧp²) and the wid
 E*: it falls to nothing as the rim crosses the cell. Contacts whose cells keep this gap grow evenly with the
 approach; where cells are all or nothing, each that enters makes the stiffness jump.
 
+Where surfaces flow, at a hardness H, the border of the flow is a rim as well: what is missing of H is A √s at
+a distance s outside of it, and inside bodies overlap by as much as they part elsewhere. So H − p stands for
+p, and what is left is an overlap, a gap below zero.
+
 The curves, of `kernels.rim_curves`, are those of Hertz's contacts, whose cells are known. On cells that are
 not square, directions count on the grid, and the width is that of a cell along the normal.
 
@@ -62,7 +66,8 @@ Pressure and the differences beside it, along and across, Pa; the residual, m; �
 behind its knot; then the numbers of a row of curves. In place of the pressure comes the step, Pa, in those
 of the differences its inverse and the width, m/Pa.
 """
-NUMBERS = COLUMNS + EIGHT
+SIGN, BEYOND, NUMBERS = range(COLUMNS + EIGHT, COLUMNS + EIGHT + 3)
+"""Behind these the sign of the gap, and what is left at the other border, m."""
 GAP, OWN, WEIGHT, ALONE, MASKED = range(5)
 """What is kept of the cells of a chunk.
 
@@ -120,32 +125,41 @@ def cells_beside(rims: Rims | None) -> int:
 
 
 @compiled(**INNER, **REASSOCIATE)
-def _mark_rims(b: Box, rims: Rims, level: float) -> None:
+def _mark_rims(b: Box, rims: Rims, level: float, hardness: float) -> bool:
     """Mark cells whose pressure is less than the step between their neighbours; keep the residual.
 
     Not those without pressure that stay apart by more than a rim leaves in any cell; level of residuals in m.
+    Where surfaces flow likewise, by what cells lack of the hardness. Returns whether any of them do.
     """
     real = b.z.dtype.type
-    zero = real(0.0)
+    zero, one = real(0.0), real(1.0)
+    flowing = zero
     most = real(END**4)
     steep = real(STEEP_END**4)
     side = max(rims.along, rims.across)
     wide = real(side * MOST_LEFT)
     level = real(level)
+    cap = real(hardness)
     margin = (len(b.framed) - len(b.z)) // 2
     above = b.framed[margin - b.pitch :]
     middle = b.framed[margin - 1 :]
     below = b.framed[margin + b.pitch :]
     for q in range(len(b.z)):
         p = middle[q + 1]
+        lacked = cap - p
+        near = min(p, lacked)
+        apart = b.residual[q] - level
+        apart = apart if p <= lacked else -apart
         x = abs(below[q] - above[q])
         y = abs(middle[q + 2] - middle[q])
         squares = x * x + y * y
-        at_rim = p * p < most * squares and (p > zero or b.residual[q] < wide * (x + y) + level)
-        flat = at_rim and p * p >= steep * squares
+        at_rim = near * near < most * squares and (near > zero or apart < wide * (x + y))
+        flat = at_rim and near * near >= steep * squares
         rims.marks[q] = np.uint8(at_rim) + np.uint8(flat)
+        flowing += one if lacked * lacked < most * squares else zero
     for q in range(len(b.z)):
         rims.bare[q] = b.residual[q]
+    return flowing > zero
 
 
 @compiled(**INNER)
@@ -262,16 +276,55 @@ def _look(b: Box, rims: Rims, first: int, count: int, level: float) -> None:
         c[UNMET * CHUNK + i] = b.residual[q] - level
 
 
+@compiled(**CALLED)
+def _look_from_flow(c: NDArray, count: int, hardness: float) -> bool:
+    """Let what cells of a chunk lack of the hardness stand for their pressure where that is less.
+
+    Their gaps then have another sign. Returns whether some are at a rim and at a border of flow at once.
+    """
+    real = c.dtype.type
+    cap, most = real(hardness), real(END**4)
+    both = 0
+    for i in range(count):
+        p = c[P * CHUNK + i]
+        lacked = cap - p
+        sign = real(-1.0) if lacked < p else real(1.0)
+        far = max(p, lacked)
+        c[SIGN * CHUNK + i] = sign
+        c[P * CHUNK + i] = min(p, lacked)
+        c[UNMET * CHUNK + i] *= sign
+        both += far * far < most * (c[X * CHUNK + i] ** 2 + c[Y * CHUNK + i] ** 2)
+    return both > 0
+
+
 @compiled(**INNER)
-def _compute(b: Box, rims: Rims, first: int, count: int, level: float) -> int:
+def _compute(rims: Rims, count: int) -> int:
     """Find how rims cross the cells of a chunk, by number; return how many cells its vectors hold."""
-    lane = lanes(b.z)
+    lane = lanes(rims.chunk)
     filled = (count + lane - 1) // lane * lane
-    _look(b, rims, first, count, level)
     _place(rims.chunk, rims.places, filled, rims.along, (rims.along / rims.across) ** 2)
     for k in range(0, filled, lane):
         columns(rims.curves, rims.places, k, rims.chunk, COLUMNS * CHUNK + k, CHUNK)
     return filled
+
+
+@compiled(**CALLED)
+def _leave_to_flow(
+    b: Box, rims: Rims, first: int, count: int, gaps: NDArray, hardness: float, both: bool
+) -> None:
+    """Take off gaps of cells, by number, what the other border leaves; where cells flow, they overlap."""
+    c = rims.chunk
+    cap = c.dtype.type(hardness)
+    beyond = c[BEYOND * CHUNK :]
+    if both:
+        _look(b, rims, first, count, 0.0)
+        for i in range(count):
+            c[P * CHUNK + i] = max(c[P * CHUNK + i], cap - c[P * CHUNK + i])
+        _find_gaps(c, beyond, _compute(rims, count))
+        for i in range(count):
+            gaps[i] -= beyond[i]
+    for i in range(count):
+        gaps[i] *= c[SIGN * CHUNK + i]
 
 
 @compiled(**INNER)
@@ -282,29 +335,41 @@ def _take(b: Box, rims: Rims, first: int, count: int, gaps: NDArray) -> None:
 
 
 @compiled(**CALLED)
-def set_rims(b: Box, rims: Rims | None, level: float, stiffness: float) -> None:
+def set_rims(b: Box, rims: Rims | None, level: float, stiffness: float, hardness: float) -> None:
     """Find the cells at rims, and take the gap that is left in them off a residual that lacks none.
 
     The gap falls with the pressure, the steeper the less there is: what counts is the difference quotient up
     to the pressure that would meet the residual above a level, m, if no other cell changed its own. The
-    stiffness, Pa/m, is that of a cell among others.
+    stiffness, Pa/m, is that of a cell among others; at the hardness, Pa, surfaces flow.
     """
     if rims is not None:
-        _mark_rims(b, rims, level)
+        flows = _mark_rims(b, rims, level, hardness)
         steep = _list(rims, len(b.z), 0, 0)
         number = _list(rims, len(b.z), 1, steep)
         rims.number[0] = number
         rims.number[1] = steep
+        both = False
         for first in range(0, steep, CHUNK):
             count = min(CHUNK, steep - first)
             kept = rims.kept[KEPT * first :]
-            _find_steep_gaps(rims.chunk, kept, _compute(b, rims, first, count, level), stiffness)
-            _take(b, rims, first, count, kept[GAP * CHUNK :])
+            _look(b, rims, first, count, level)
+            if flows:
+                both = _look_from_flow(rims.chunk, count, hardness)
+            _find_steep_gaps(rims.chunk, kept, _compute(rims, count), stiffness)
+            gaps = kept[GAP * CHUNK :]
+            if flows:
+                _leave_to_flow(b, rims, first, count, gaps, hardness, both)
+            _take(b, rims, first, count, gaps)
         for first in range(steep, number, CHUNK):
             count = min(CHUNK, number - first)
-            flat = rims.flat[first:]
-            _find_gaps(rims.chunk, flat, _compute(b, rims, first, count, level))
-            _take(b, rims, first, count, flat)
+            gaps = rims.flat[first:]
+            _look(b, rims, first, count, level)
+            if flows:
+                both = _look_from_flow(rims.chunk, count, hardness)
+            _find_gaps(rims.chunk, gaps, _compute(rims, count))
+            if flows:
+                _leave_to_flow(b, rims, first, count, gaps, hardness, both)
+            _take(b, rims, first, count, gaps)
 
 
 @compiled(**INNER)
@@ -458,11 +523,12 @@ def _steps_beside(pressure: NDArray, i: int, j: int) -> tuple[float, float]:
 
 
 @compiled(**LOOP)
-def rim_slopes(pressure: NDArray, along: float, across: float, slopes: NDArray) -> None:
-    """Find how the gap at rims changes with the pressure.
+def rim_slopes(pressure: NDArray, along: float, across: float, hardness: float, slopes: NDArray) -> None:
+    """Find how the gap at rims changes with the pressure, and at borders of flow what is left there.
 
-    Pressure (nx, ny), Pa; sides of a cell over E*, m/Pa. `slopes` (3, nx, ny), zeros, receives derivatives,
-    m/Pa: by the pressure of the cell itself, by the difference of its neighbours along, and across.
+    Pressure (nx, ny), Pa; sides of a cell over E*, m/Pa; hardness, Pa. `slopes` (3, nx, ny), zeros, receives
+    derivatives, m/Pa: by the pressure of the cell itself, by the difference of its neighbours along, and
+    across.
     """
     nx, ny = pressure.shape
     elongation = (along / across) ** 2
@@ -470,18 +536,25 @@ def rim_slopes(pressure: NDArray, along: float, across: float, slopes: NDArray) 
         for j in range(ny):
             p = pressure[i, j]
             x, y = _steps_beside(pressure, i, j)
-            if p > 0.0 and p * p < END**4 * (x * x + y * y):
-                step, _, width, ratio, slant = _at_rim(p, abs(x), abs(y), along, elongation)
-                left, slope, turn = remaining_gap(ratio, slant)
-                by_step = (2.0 * left - 0.5 * slope * ratio) * width / step
-                by_width = left * (width / along) ** 2 * width / step
-                by_near = turn * step * width / max(abs(x), abs(y))
-                by_far = -slant * by_near
-                wide = abs(x) >= abs(y)
-                slopes[0, i, j] = 0.5 * slope * width / ratio
-                slopes[1, i, j] = x * (by_step - by_width) + np.sign(x) * (by_far if wide else by_near)
-                slopes[2, i, j] = y * (by_step - by_width * elongation)
-                slopes[2, i, j] += np.sign(y) * (by_near if wide else by_far)
+            # gap and pressure change their signs together at a border of flow, and so their slopes do not
+            for near, beside, aside in ((p, x, y), (hardness - p, -x, -y)):
+                if near > 0.0 and near * near < END**4 * (x * x + y * y):
+                    _add_slopes(near, beside, aside, along, elongation, slopes[:, i, j])
+
+
+@compiled(**INNER)
+def _add_slopes(p: float, x: float, y: float, along: float, elongation: float, slopes: NDArray) -> None:
+    """Add to slopes (3,) those of the gap in a cell at a rim, m/Pa."""
+    step, _, width, ratio, slant = _at_rim(p, abs(x), abs(y), along, elongation)
+    left, slope, turn = remaining_gap(ratio, slant)
+    by_step = (2.0 * left - 0.5 * slope * ratio) * width / step
+    by_width = left * (width / along) ** 2 * width / step
+    by_near = turn * step * width / max(abs(x), abs(y))
+    by_far = -slant * by_near
+    wide = abs(x) >= abs(y)
+    slopes[0] += 0.5 * slope * width / ratio
+    slopes[1] += x * (by_step - by_width) + np.sign(x) * (by_far if wide else by_near)
+    slopes[2] += y * (by_step - by_width * elongation) + np.sign(y) * (by_near if wide else by_far)
 
 
 @compiled(**LOOP)

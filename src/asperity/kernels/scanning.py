@@ -264,7 +264,7 @@ def solve_contact(known: Influence, b: Block, approach: float, pressure: NDArray
     true_residual(everywhere, outer, task, edges)
     if guessed and load < 0.0 and (not _scale(outer, hardness) or edges.number[0]):
         true_residual(everywhere, outer, task, edges)
-    set_rims(outer, b.room.rims, 0.0, known.taps[0])
+    set_rims(outer, b.room.rims, 0.0, known.taps[0], hardness)
     worst, level, top, bottom, near, far = survey(outer, task, b.room.rims, known.taps[0])
     iterations: int = np.int64(0)  # type: ignore[assignment]  # a literal one would be compiled apart
     moving = True
