@@ -58,7 +58,7 @@ def test_pieces_of_a_texture_on_covered_cells_are_those_of_the_whole_and_made_on
     monkeypatch.setattr(Rows, "rows", lambda of, first, stop: read.append(first) or of.heights[first:stop])
     for first, stop in ((0, 30), (0, 4), (11, 12), (25, 30), (30, 30)):
         np.testing.assert_array_equal(strip.rows(first, stop), pressed_heights(heights)[first:stop])
-    assert read == [0, 6, 14, 22]
+    assert sorted(read) == [0, 6, 14, 22]
 
 
 WAVES = [(0.0, 4.0), (0.4, 3.0), (0.7, 6.0), (1.2, 20.0), (np.pi / 4, 2**0.5)]
