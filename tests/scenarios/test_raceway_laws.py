@@ -290,6 +290,17 @@ def test_waves_on_any_line_of_a_raceway_count():
         doubt_surface(replace(smooth, heights=heights), APPROACH, "ball")
 
 
+def test_steps_between_rows_of_a_raceway_are_no_steeper_than_one():
+    """Every other row is so high that two are further apart in height than along."""
+    smooth = raceway_on(CONTACT, LOAD, 0.2 * MM)
+    heights = np.zeros_like(smooth.heights)
+    heights[::2] = 1.1 * smooth.spacing[0]
+    steep = replace(smooth, heights=heights)
+    with pytest.raises(InputError, match=r"rms slope: received 1\.1; allowed: at most 1"):
+        doubt_surface(steep, smooth.spacing[0], "ball")
+    doubt_surface(replace(steep, heights=0.8 * heights), smooth.spacing[0], "ball")
+
+
 @pytest.mark.parametrize("forwards", [True, False])
 def test_direct_sees_the_pits_of_ball_and_raceway_where_they_are(forwards):
     """One deeper pit where both meet, two where the ball has turned on; on other cells and a finer grid."""
