@@ -169,7 +169,7 @@ def main() -> None:
         works = {name: partial(Tree.took_first, case=case) for name, case in FIRST.items()}
     with two_trees(arguments.commit) as trees:
         print(f"{'':14} {arguments.commit[:10]:>28} {'here':>28}")
-        print(f"{'':14} " + 2 * f"{'wall s':>9} {'cpu s':>9} {'MiB':>8} " + "  ratio of both")
+        print(f"{'':14} " + 2 * f"{'wall s':>9} {'cpu s':>9} {'MiB':>8} " + " ratios: wall, cpu")
         for name, work in works.items():
             found: list[list[Took]] = [[], []]
             for number in range(arguments.rounds + 1):
