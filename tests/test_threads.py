@@ -1,5 +1,6 @@
 """How many threads a computation takes."""
 
+import threading
 import time
 
 import numpy as np
@@ -9,7 +10,14 @@ from threadpoolctl import threadpool_info, threadpool_limits
 import asperity
 from asperity import HalfSpace
 from asperity.errors import InputError
-from asperity.threads import in_order, one_thread_in_linear_algebra, processors, refuse_to_go_on, thread_count
+from asperity.threads import (
+    begun_in_order,
+    in_order,
+    one_thread_in_linear_algebra,
+    processors,
+    refuse_to_go_on,
+    thread_count,
+)
 
 
 def test_one_per_processor_unless_the_environment_says_otherwise(monkeypatch):
@@ -70,6 +78,27 @@ def test_results_come_in_order_few_are_held_and_errors_come_out():
     with pytest.raises(ZeroDivisionError):
         next(results)
     assert len(begun) <= 21 + 2 * 3 + 1
+
+
+def test_tasks_run_while_the_caller_does_other_work():
+    done = threading.Event()
+    with begun_in_order(lambda item: (done.set(), item), [0, 1], workers=2) as results:
+        assert done.wait(5)
+        assert [item for _, item in results] == [0, 1]
+    with begun_in_order(str, range(3), workers=1) as results:
+        assert list(results) == ["0", "1", "2"]
+
+
+def test_tasks_stop_when_the_work_beside_them_fails():
+    def task(item):
+        while True:
+            refuse_to_go_on()
+            time.sleep(0.01)
+
+    begin = time.monotonic()
+    with pytest.raises(ZeroDivisionError), begun_in_order(task, range(9), workers=2):
+        1 / 0  # noqa: B018
+    assert time.monotonic() - begin < 5
 
 
 def test_contacts_of_a_scan_are_such_pieces(monkeypatch):

@@ -1,9 +1,11 @@
 """What can go wrong, and what to do about it: errors, physics warnings, outcomes; and text fit to show."""
 
 import sys
+import threading
 import unicodedata
 import warnings
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from enum import Enum
 
@@ -46,6 +48,7 @@ MOST_WORDS = 300
 """Characters of what a library says that a message repeats."""
 MOST_ERRORS = 10
 """Errors of a case that are listed: who has more corrects these first."""
+_here = threading.local()  # in a thread: whether physics warnings are left unsaid
 
 
 class AsperityError(Exception):
@@ -171,6 +174,8 @@ class PhysicsWarning(UserWarning):
     @classmethod
     def warn(cls, message: str, grade: Grade = Grade.WARNING) -> None:
         """Warn, at the place outside this package from which it was called."""
+        if getattr(_here, "unsaid", False):
+            return
         frame = sys._getframe(1)
         level = 2
         while frame.f_back and frame.f_globals.get("__name__", "").startswith("asperity."):
@@ -182,6 +187,16 @@ class PhysicsWarning(UserWarning):
     def ignored(cls) -> "warnings.catch_warnings[None]":
         """Leave those of this class unsaid within a ``with`` statement."""
         return warnings.catch_warnings(action="ignore", category=cls)
+
+    @staticmethod
+    @contextmanager
+    def unsaid_here() -> Iterator[None]:
+        """Leave all unsaid in this thread alone: what `ignored` and `caught` change, all threads share."""
+        _here.unsaid = True
+        try:
+            yield
+        finally:
+            _here.unsaid = False
 
     @classmethod
     def caught(cls) -> "warnings.catch_warnings[list[warnings.WarningMessage]]":

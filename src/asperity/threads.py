@@ -69,21 +69,37 @@ def in_order(task: Callable[[T], R], items: Iterable[T], workers: int | None = N
     However many items there are, few results are held. If the consumer stops, as by an interrupt, the tasks
     that run are asked to stop, see `refuse_to_go_on`, and the others are not begun.
     """
+    with begun_in_order(task, items, workers) as results:
+        yield from results
+
+
+@contextmanager
+def begun_in_order(
+    task: Callable[[T], R], items: Iterable[T], workers: int | None = None
+) -> Iterator[Iterator[R]]:
+    """The results of `in_order`, whose tasks run while the caller does other work in a ``with`` statement.
+
+    One worker, the caller's own thread, begins when they are taken.
+    """
     count = workers or thread_count()
     if count == 1:
-        yield from map(task, items)
+        yield map(task, items)
         return
-    waiting = iter(items)
-    pending = deque[Future[R]]()
     stopped = threading.Event()
     executor = ThreadPoolExecutor(count, initializer=setattr, initargs=(_here, "stopped", stopped))
+    begun = (executor.submit(task, item) for item in items)
     try:
-        pending.extend(executor.submit(task, item) for item in islice(waiting, AHEAD * count))
-        while pending:
-            result = pending.popleft().result()
-            pending.extend(executor.submit(task, item) for item in islice(waiting, 1))
-            yield result
-            del result
+        pending = deque(islice(begun, AHEAD * count))
+        yield _taken(pending, begun)
     finally:
         stopped.set()
         executor.shutdown(wait=True, cancel_futures=True)
+
+
+def _taken(pending: deque[Future[R]], begun: Iterator[Future[R]]) -> Generator[R]:
+    """Results of tasks that are begun, in their order; with each that is taken another task is begun."""
+    while pending:
+        result = pending.popleft().result()
+        pending.extend(islice(begun, 1))
+        yield result
+        del result

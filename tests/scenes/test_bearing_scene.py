@@ -126,6 +126,14 @@ def test_what_a_part_makes_alone_is_told(runs):
     assert tree["rolling/energy_residual"].values[0] < 1e-6
 
 
+def test_what_runs_of_the_parts_doubt_is_not_told_beside_the_run_of_the_bearing():
+    """They run beside it, and doubt the same."""
+    case = as_case(BEARING | {"duration": "50 ms", "time_step": "4 us"})
+    told, alone = (asperity.run(case, brief=brief).attrs["warnings"] for brief in (False, True))
+    assert told == alone
+    assert json.loads(told)
+
+
 def test_bands_beyond_the_sampling_are_missing_and_a_band_that_is_given_is_taken():
     keys = {"duration": "1 s", "sampling_rate": "12.8 kHz", "envelope_band": ["4 kHz", "5 kHz"]}
     case = as_case(SMOOTH | keys)

@@ -4,7 +4,6 @@ import math
 import time
 import warnings
 from collections.abc import Iterator
-from dataclasses import replace
 
 import numpy as np
 import xarray
@@ -25,7 +24,7 @@ from asperity.scenarios.prepared_bearing import (
 )
 from asperity.scenes.bearing_at_rest import DIRECTIONS
 from asperity.scenes.bearing_validity import bearing_findings
-from asperity.scenes.computed_bearing import BY_PARTS, ComputedBearing, compute_bearing, rolled_alone
+from asperity.scenes.computed_bearing import BY_PARTS, ComputedBearing, compute_bearing, compute_with_parts
 from asperity.scenes.figures.sources import loudest
 from asperity.scenes.observer import observed
 from asperity.scenes.observers import OF_BEARINGS
@@ -55,9 +54,8 @@ def bearing_result(
     """Run a bearing by each of its laws and lay its result out, as `asperity.scenes.result` does others."""
     case = prepared.case
     began = time.monotonic()
-    computed = compute_bearing(prepared, progress)
-    if not brief:
-        computed = replace(computed, alone=rolled_alone(computed, progress))
+    compute = compute_bearing if brief else compute_with_parts
+    computed = compute(prepared, progress)
     seen = observed(computed, OF_BEARINGS)
     found = list(bearing_findings(case, computed.runs)) + seen.findings
     warn_of_findings(found)

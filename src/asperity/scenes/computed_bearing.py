@@ -1,9 +1,9 @@
 """A ball bearing is run by each of its laws: what of it was recorded."""
 
-import warnings
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import cache, partial
 from typing import Any, Self
 
 import numpy as np
@@ -38,7 +38,7 @@ from asperity.speeds import SpeedCourse
 from asperity.store import Store
 from asperity.structures.ball_bearing import BallBearing
 from asperity.structures.ring import Ring
-from asperity.threads import in_order
+from asperity.threads import begun_in_order
 
 DAMPED = 0.05
 """Share by which the force of a contact that is looked up may lie beside what its damping leaves of it."""
@@ -75,11 +75,16 @@ class ComputedBearing(PreparedBearing, RecordedRuns):
         return frozenset({"contact_force", "bearing"} | sensed)
 
 
-def compute_bearing(prepared: PreparedBearing, progress: Progress) -> ComputedBearing:
-    """Run the bearing by each law, at the sampling rate of the case."""
+def compute_bearing(
+    prepared: PreparedBearing, progress: Progress, begin_beside: Callable[[], object] = lambda: None
+) -> ComputedBearing:
+    """Run the bearing by each law, at the sampling rate of the case.
+
+    `begin_beside` is called as a run begins that takes one thread, after scans, which take all; maybe again.
+    """
     every = prepared.case.steps_per_sample
     found = {}
-    for name, run in _rolled(prepared, progress):
+    for name, run in _rolled(prepared, progress, begin_beside=begin_beside):
         signals: dict[str, Any] = {each: thinned(getattr(run, each), every) for each in SIGNALS}
         signals |= {each: np.maximum(signals[each], getattr(run, each).min()) for each in FORCES}
         found[name] = replace(run, time=run.time[::every], cage=run.cage[::every], **signals)
@@ -88,7 +93,10 @@ def compute_bearing(prepared: PreparedBearing, progress: Progress) -> ComputedBe
 
 
 def _rolled(
-    prepared: PreparedBearing, progress: Progress | None = None, share: float = 1.0
+    prepared: PreparedBearing,
+    progress: Progress | None = None,
+    share: float = 1.0,
+    begin_beside: Callable[[], object] = lambda: None,
 ) -> Iterator[tuple[str, RolledBearing]]:
     """The bearing as each law rolls it, at all time steps.
 
@@ -113,6 +121,8 @@ def _rolled(
         return [heights for each in every for heights in (each.heights, each.line, each.faults)]
 
     def once(law: str, inner: Any, outer: Any, share: float) -> RolledBearing:
+        if share == 1.0:
+            begin_beside()
         return roll_bearing(
             of, bearing_rings(case), inner, outer,
             speed=case.speed, radial=case.radial, axial=case.axial, rotating=case.rotating,
@@ -135,6 +145,7 @@ def _rolled(
             ScannedRaceway(on, on.states_under(each.min(), each.max()))
             for on, each in zip(ons, loads, strict=True)
         ]
+    del ons  # what they derived of heights is not needed beside what is rolled
     for name in case.laws:
         if name in looked_up:
             run, scanned = within_scan(partial(looking_up, name), scanned, _visited, TRIED)
@@ -144,32 +155,48 @@ def _rolled(
         yield name, run
 
 
-def rolled_alone(computed: ComputedBearing, progress: Progress) -> dict[str, Array]:
-    """Accelerations (sensors, n), m/s², by `BY_PARTS` with what is on each part alone, and on none.
+def compute_with_parts(prepared: PreparedBearing, progress: Progress) -> ComputedBearing:
+    """Run the bearing by each law, and by `BY_PARTS` with what is on each part alone, and on none.
 
-    None at all if nothing is on any. The runs are independent, and made on threads.
+    None of the latter if nothing is on any. These runs are independent, and made on threads, beside the runs
+    of the bearing, which take one thread each.
     """
-    case = computed.case
-    textured = [key for key in map(case.called, ON) if getattr(case, key).given()]
+    case = prepared.case
+    textured = _textured(case)
     if not textured:
-        return {}
+        return compute_bearing(prepared, progress)
     names = ["perfect surfaces", *(named_on(case, key) for key in textured)]
     if len(case.faults) > 1:
         names[-1] = "the faults"
-    kept = (None, *textured)
+    others = (dict.fromkeys(key for key in textured if key != kept) for kept in (None, *textured))
+    parts = (_without(case, left_out) for left_out in others)
+    with ExitStack() as beside:
+        begin = cache(lambda: beside.enter_context(begun_in_order(_acceleration, parts)))
+        computed = compute_bearing(prepared, progress, begin)
+        runs = counted(begin(), len(names), "rolling with parts alone", progress)
+        alone = dict(zip(names, runs, strict=True))
+    still = np.zeros_like(computed.first.acceleration)
+    return replace(computed, alone={name: still if run is None else run for name, run in alone.items()})
 
-    def alone(part: int) -> Array:
-        others = {key: None for key in textured if key != kept[part]}
-        prepared = prepare_bearing(case.with_(laws=[BY_PARTS], **others))
-        if kept[part] is None and _stands_still(prepared):
-            return np.zeros_like(computed.first.acceleration)
+
+def _textured(case: BearingUnderLoad) -> list[str]:
+    """Sections of a case that put anything on a part."""
+    return [key for key in map(case.called, ON) if getattr(case, key).given()]
+
+
+def _without(case: BearingUnderLoad, left_out: dict[str, None]) -> PreparedBearing:
+    """A case by `BY_PARTS`, some sections left out, laid ready; of the whole bearing it has been warned."""
+    with PhysicsWarning.ignored():
+        return prepare_bearing(case.with_(laws=[BY_PARTS], **left_out))
+
+
+def _acceleration(prepared: PreparedBearing) -> Array | None:
+    """Accelerations (sensors, n), m/s², by `BY_PARTS`; None where nothing vibrates."""
+    with PhysicsWarning.unsaid_here():
+        if not _textured(prepared.case) and _stands_still(prepared):
+            return None
         ((_, run),) = _rolled(prepared)
-        return thinned(run.steadied().acceleration, case.steps_per_sample)
-
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", PhysicsWarning)  # of the whole bearing it has been warned
-        runs = counted(in_order(alone, range(len(names))), len(names), "rolling with parts alone", progress)
-        return dict(zip(names, runs, strict=True))
+        return thinned(run.steadied().acceleration, prepared.case.steps_per_sample)
 
 
 def _stands_still(prepared: PreparedBearing) -> bool:
