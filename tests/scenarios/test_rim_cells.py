@@ -193,16 +193,37 @@ def test_other_laws_keep_whole_cells_whichever_are_run_beside_them():
     assert changed("ball-on-beam").contact.rim_cells == "auto"
 
 
-def test_cells_are_whole_where_covered_ones_are_not_known(monkeypatch):
-    keys = {"kind": "wheel-on-rail", "duration": "5 ms", "wheel": {"load": "50 kN"}, "laws": ["direct"]}
-    rail = {"spectrum": "iso3095", "lateral": 1.0}
-    assert prepared(**keys, cells="auto", surface=rail).cells_of_heights == "covered"
-    joint = prepared(**keys, cells="auto", surface=rail | {"joint_depth": "1 mm", "joint_length": "0.5 m"})
-    told = "covered ones have not been held to flats and joints"
-    assert (joint.cells_of_heights, joint.rims) == ("whole", told)
+def test_cells_are_whole_on_a_device(monkeypatch):
     monkeypatch.setattr(rim_cells, "find_device", lambda: "a device")
     made = chosen(0.02)
     assert (made.cells_of_heights, made.rims) == ("whole", "the device gpu has no others")
+
+
+GRID = {"spacing": "1 mm", "sample_length": "0.2 m"}
+WHEEL = {"kind": "wheel-on-rail", "duration": "5 ms", "laws": ["direct"], "contact": GRID}
+FLAT = {"roughness": None, "flat_length": "40 mm", "flat_position": "50.3 mm"}
+
+
+@pytest.mark.parametrize(
+    "defect", [{"wheel": FLAT}, {"surface": {"joint_depth": "1 mm", "joint_length": "0.1 m"}}]
+)
+def test_defects_are_covered_likewise_with_mean_heights(defect):
+    """Those of points would let an end of a flat touch too early: it is a kink within a cell."""
+    keys = {"surface": {"spectrum": "iso3095", "lateral": 1.0} | defect.get("surface", {})}
+    keys |= {"wheel": {"load": "50 kN"} | defect.get("wheel", {})}
+    made = prepared(**WHEEL, **keys, cells="auto")
+    assert made.cells_of_heights == "covered"
+    assert made.rims.endswith("within the contact, up to 0.1")
+    shape, seen = made.of_heights
+    defects, (spacing, _) = seen.defects, shape.spacing
+    at = seen.rows_along(spacing)
+    heights = whole(seen.surface) - whole(seen.path)
+    parts = (np.arange(1001) - 500) / 1001 * spacing
+    expected = np.mean([defects.heights(at + part) for part in parts], axis=0)
+    assert np.ptp(expected - defects.heights(at)) > 5e-7
+    np.testing.assert_allclose(heights, np.broadcast_to(expected[:, None], heights.shape), atol=2e-8)
+    points = whole(made.textures.surface) - whole(made.textures.path)
+    np.testing.assert_allclose(points[:, 0], defects.heights(at), atol=1e-15)
 
 
 def test_what_was_chosen_is_told_before_the_run():

@@ -235,7 +235,7 @@ def struck(**keys):
     """Textures of a smooth wheel and rail with a defect, and the positions along them."""
     keys = {"surface": {"smooth": True}, "wheel": {"roughness": None}} | keys
     found = textures("wheel-on-rail", laws=["linear"], contact={"window": "20 mm"}, **keys)
-    return found, found.start + 1e-3 * np.arange(len(found.line))
+    return found, found.rows_along(1e-3)
 
 
 def test_flats_lie_where_they_are_said_and_are_as_long():
@@ -247,13 +247,14 @@ def test_flats_lie_where_they_are_said_and_are_as_long():
     assert len(found.maps) == 1
     assert not np.ptp(found.maps[0].heights)  # samples have none of it
     found, at = struck(wheel=flat | {"flat_length": "80 mm", "flat_shape": "worn"})
-    assert np.ptp(at[(found.defects < 0) & (np.abs(at - 1.0) < 0.2)]) == pytest.approx(80e-3, abs=3e-3)
+    within = (found.defects.heights(at) < 0) & (np.abs(at - 1.0) < 0.2)
+    assert np.ptp(at[within]) == pytest.approx(80e-3, abs=3e-3)
 
 
 @pytest.mark.parametrize("duration", ["40 ms", "1 s"])
 def test_first_impact_of_a_flat_lies_in_the_record(duration):
-    found, _ = struck(wheel={"roughness": None, "flat_depth": "0.3 mm"}, duration=duration)
-    touched = np.flatnonzero(found.defects[found.recorded])
+    found, at = struck(wheel={"roughness": None, "flat_depth": "0.3 mm"}, duration=duration)
+    touched = np.flatnonzero(found.defects.heights(at[found.recorded]))
     assert 500 < touched[0] < touched[-1] < found.recorded.stop - found.recorded.start - 100
 
 
@@ -269,9 +270,10 @@ def test_corrugation_is_texture_and_a_joint_is_a_defect_into_which_the_wheel_fal
     told = re.search(r"corrugation: (\S+) µm rms over this record, 14\.1 µm in the long run", found.origin)
     assert float(told[1]) == pytest.approx(rms, rel=5e-3)
     assert found.drawn["corrugation"].startswith("0.05 m, 0.3 octaves, seed ")
-    found, _ = struck(surface={"joint_depth": "2 mm", "joint_position": "1 m"})
-    assert np.all(found.trajectory >= found.defects - 1e-12)
-    assert found.defects.min() < found.trajectory.min() < 0.0
+    found, at = struck(surface={"joint_depth": "2 mm", "joint_position": "1 m"})
+    heights = found.defects.heights(at)
+    assert np.all(found.trajectory >= heights - 1e-12)
+    assert heights.min() < found.trajectory.min() < 0.0
 
 
 @pytest.mark.parametrize(

@@ -95,7 +95,6 @@ def restricted(textures: Textures, spacing: float, every: int, lines: int) -> Te
         before=before,
         beyond=len(line) - before - recorded,
         parts={name: along(part) for name, part in textures.parts.items()},
-        defects=None if textures.defects is None else textures.defects[first::every],
         trajectory=None if textures.trajectory is None else textures.trajectory[first::every],
     )
 

@@ -48,8 +48,6 @@ def _chosen(prepared: PreparedCase) -> tuple[str, str]:
     case = prepared.case
     shape = prepared.shape
     maps = prepared.textures.maps
-    if case.has_defect:
-        return "whole", "covered ones have not been held to flats and joints"
     if find_device() is not None:
         return "whole", "the device gpu has no others"
     within = roughness_within(samples_of(case, shape, maps, shape.class_axes), shape)

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Any, NamedTuple, cast
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -16,13 +16,14 @@ from asperity.case.surface import Surface
 from asperity.errors import InputError, OutOfRangeWarning, ShortRecordWarning, TruncatedContactWarning
 from asperity.laws import spec_of
 from asperity.scenarios import records
+from asperity.scenarios.defects import Defects
 from asperity.scenarios.geometry import Geometry, cells_over, window_cells
 from asperity.scenarios.records import Grid, Record
 from asperity.spectra import lowest_band
 from asperity.speeds import SpeedCourse
-from asperity.surfaces import levelling, measured_lines, statistics, synthesis
+from asperity.surfaces import levelling, statistics, synthesis
 from asperity.surfaces.cell_means import PressedStrip, pressed_heights
-from asperity.surfaces.defects import FlatShape, corrugation, dipped_joint, flat_geometry, flat_trajectory
+from asperity.surfaces.defects import corrugation
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.strip import LongStrip, Raised, Rows, Strip, raised, turning
 from asperity.written_numbers import count_of, rounded
@@ -57,8 +58,7 @@ class Textures:
     origin: str  # where samples and path come from, in one sentence
     # line textures that `line` is the sum of, by the body that bears them, m
     parts: dict[str, Array] = field(default_factory=dict)
-    # (rows,), heights of defects along the path, m; neither in `line` nor in `path`
-    defects: Array | None = None
+    defects: Defects | None = None  # on the path, neither in `line` nor in `path`
     trajectory: Array | None = None  # (rows,), height of the rolling body's centre over them, m
     # whether heights beside the line are a texture of their own, not carried over from lines
     areal: bool = True
@@ -103,7 +103,26 @@ class Textures:
     def surface(self) -> Strip:
         """The path with its defects, shape (rows, ny)."""
         assert self.path is not None
-        return self.path if self.defects is None else raised(self.path, self.defects)
+        if self.defects is None:
+            return self.path
+        spacing, _ = self.path.spacing
+        rows = self.rows_along(spacing)
+        if self.points is None:
+            return raised(self.path, self.defects.heights(rows))
+        return raised(self.path, self.defects.mean_heights(rows, spacing))
+
+    def rows_along(self, spacing: float) -> Array:
+        """Positions (rows,) along the path, m, of rows of a spacing, m."""
+        return self.start + spacing * np.arange(len(self.line), dtype=np.float64)
+
+    def with_defects(self, case: Case, contact: int) -> "Textures":
+        """The same with the defects that a case has under a contact, where any of them is on the path."""
+        defects = Defects(case, contact)
+        spacing = case.contact.spacing
+        rows = self.rows_along(spacing)
+        if not defects.heights(rows).any():
+            return replace(self, defects=None, trajectory=None)
+        return replace(self, defects=defects, trajectory=defects.trajectory(rows, spacing))
 
 
 def textures_of(case: Case) -> Textures:
@@ -161,7 +180,7 @@ def textures_of(case: Case) -> Textures:
         lines=lines,
         drawn={name: draw for name, draw in drawn.items() if draw},
     )
-    return replace(textures, **_defects(case, 0, textures))
+    return textures.with_defects(case, 0)
 
 
 class _Corrugation(NamedTuple):
@@ -217,7 +236,7 @@ def textures_under(case: Case, contact: int, first: Textures) -> Textures:
     rows = len(first.line)
     before = first.before
     if contact == 0 or not case.rolling.has_own_texture:
-        return replace(first, **_defects(case, contact, first))
+        return first.with_defects(case, contact)
     grid = Grid(rows, window_cells(case.contact), case.contact.spacing)
     seed = int(np.random.SeedSequence(case.seed).generate_state(2)[1])
     turns = [_turn(case, each, grid, seed).heights for each in (0, contact)]
@@ -233,7 +252,7 @@ def textures_under(case: Case, contact: int, first: Textures) -> Textures:
     path = None if first.path is None else turning(first.path, change, -before)
     parts = first.parts | {"wheel": first.parts["wheel"] + added}
     turned = replace(first, path=path, line=first.line + added, parts=parts, points=points)
-    return replace(turned, **_defects(case, contact, first))
+    return turned.with_defects(case, contact)
 
 
 def recorded_time(case: Case, textures: Textures) -> float:
@@ -373,39 +392,6 @@ def _turn(case: Case, contact: int, grid: Grid, seed: int) -> Record:
         return made_by(turn, rolling.circumference, lateral=lateral)
     made = made_by(replace(turn, lines=2), rolling.circumference, lateral=math.inf)  # lines that are alike
     return replace(made, strip=Rows(made.heights[:, :1]))
-
-
-# --- defects
-
-
-def _defects(case: Case, contact: int, textures: Textures) -> dict[str, Any]:
-    """Heights (rows,), m, of a joint and of the flat of a contact's body, and of its centre over them."""
-    rolling = case.rolling
-    surface = case.surface
-    spacing = case.contact.spacing
-    position = textures.start + spacing * np.arange(len(textures.line), dtype=np.float64)
-    heights, centre = np.zeros((2, len(position)))
-    if surface.joint_depth is not None:
-        joint = surface.joint_position
-        if joint is None:
-            joint = case.record_start + 0.5 * case.rolled_in(case.rolled_time)
-        dip = dipped_joint(position - joint, surface.joint_depth, surface.joint_length)
-        heights += dip
-        centre += measured_lines.roll_over(Profile(dip, spacing), rolling.radius).heights
-    if rolling.flat is not None and contact + 1 in rolling.flat_contacts:
-        depth, length = rolling.flat
-        around = round(rolling.circumference / spacing) * spacing
-        first = rolling.flat_position
-        if first is None:
-            first = 0.5 * min(around, case.rolled_in(case.rolled_time))
-        rolled = position - case.record_start - rolling.offsets[contact]
-        along = np.mod(rolled - first + 0.5 * around, around) - 0.5 * around
-        shape = cast(FlatShape, rolling.flat_shape)
-        worn = length if shape == "worn" else None
-        heights += flat_geometry(along, depth, rolling.radius, shape, worn)
-        centre += flat_trajectory(along, depth, rolling.radius, shape, worn)
-    found = {"defects": heights, "trajectory": centre}
-    return found if heights.any() else dict.fromkeys(found)
 
 
 def strip_rows(contact: ContactKeys) -> int:
