@@ -304,8 +304,19 @@ def test_whole_cells_under_a_smooth_texture_are_doubted_by_a_number():
     assert f"up to {100 * missed:.2g} %, about {level:.2g} dB" in found.value
     assert 'Set contact.rim_cells = "covered"' in found.message
     assert doubts(0.01, cells="covered")[1] == doubts(0.01, cells="auto")[1] == []
-    assert doubts(0.01, laws=["areal", "table"])[1] == []
+    assert doubts(0.01, laws=["areal", "shifted"])[1] == []
     assert doubts(1.0)[1] == []  # so rough that many cells enter at once
+
+
+@pytest.mark.parametrize("laws", [("table",), ("table", "direct")])
+def test_a_scan_on_whole_cells_is_doubted_as_contacts_of_each_step_are(laws):
+    """Its states take the jumps of the stiffness along: `benchmarks/direct_cells.py --table`."""
+    _, (found,) = doubts(0.01, laws=["areal", *laws])
+    _, (solved,) = doubts(0.01)
+    assert found.quantity == f"error of the stiffness on whole cells, {' and '.join(laws)}"
+    assert (found.value, found.meaning, found.laws) == (solved.value, solved.meaning, laws)
+    assert found.grade is Grade.WARNING
+    assert doubts(0.01, cells="auto", laws=laws)[1] == []
 
 
 def test_cells_are_counted_in_the_half_width_of_an_ellipse():

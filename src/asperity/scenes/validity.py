@@ -287,11 +287,11 @@ def _isolated(case: Case, share: float) -> Finding:
 
 
 def _whole_cells(prepared: PreparedCase, pressed: PressedSamples) -> Iterator[Finding]:
-    """Laws that solve the contact at each step on cells that are in contact or not: their stiffness jumps."""
+    """Laws of single contacts on cells that are in contact or not: their stiffness jumps."""
     case = prepared.case
     shape = prepared.shape
-    solving = tuple(law for law in case.laws if spec_of(law).solved_every_step)
-    if not solving or prepared.cells_seen != "whole":
+    seeing = tuple(law for law in case.laws if spec_of(law).sees_heights)
+    if not seeing or prepared.cells_seen != "whole":
         return
     missed = rim_cells.stiffness_missed(shape)
     samples = [shape.body - each.undeformed_gap for each in pressed.contacts]
@@ -300,7 +300,7 @@ def _whole_cells(prepared: PreparedCase, pressed: PressedSamples) -> Iterator[Fi
         cells = rounded(min(shape.semi_axes) / case.contact.spacing, 2)
         level = 20.0 * math.log10(1.0 + missed)
         yield Finding(
-            f"error of the stiffness on whole cells, {' and '.join(solving)}",
+            f"error of the stiffness on whole cells, {' and '.join(seeing)}",
             f"up to {percent(missed)}, about {rounded(level, 2)} dB in one-third octaves",
             f"up to {percent(MISSED_STIFFNESS)}",
             Grade.WARNING if missed > MISSED_STIFFNESS else None,
@@ -309,7 +309,7 @@ def _whole_cells(prepared: PreparedCase, pressed: PressedSamples) -> Iterator[Fi
             "Bands of what is damped little move by more.",
             'Set contact.rim_cells = "covered".',
             f"stiffness on whole cells up to {percent(missed)} off, some {rounded(level, 2)} dB",
-            solving,
+            seeing,
         )
 
 
