@@ -175,7 +175,9 @@ def test_a_table_by_choice_scans_what_one_of_covered_cells_does():
         np.testing.assert_allclose(np.diff(job.approaches), 1e-6 / (reducing.STATES - 1))  # all, on a beam
     np.testing.assert_array_equal(*(job.body for job in jobs))
     np.testing.assert_array_equal(*(whole(job.surface) for job in jobs))
-    found, expected = (reduced_case(each, lambda *_: None)._table().touches for each in (made, given))
+    found, expected = (
+        reduced_case(each, lambda *_: None).scanning._table().touches for each in (made, given)
+    )
     np.testing.assert_allclose(found, expected, rtol=0.0, atol=2e-15)  # planes are told to a femtometre
 
 
@@ -189,7 +191,10 @@ def test_other_laws_keep_whole_cells_whichever_are_run_beside_them():
     np.testing.assert_array_equal(whole(beside.textures.path), whole(alone.textures.path))
     for one, other in zip(beside.textures.maps, alone.textures.maps, strict=True):
         np.testing.assert_array_equal(one.heights, other.heights)
-    assert [reduced(beside)._of_law(spec_of(law)).cells for law in beside.case.laws] == ["whole", "covered"]
+    assert [each._of_law(spec_of("direct")).cells for each in (reduced(beside), reduced(beside).seeing)] == [
+        "whole",
+        "covered",
+    ]
     assert changed("ball-on-beam").contact.rim_cells == "auto"
 
 

@@ -96,6 +96,11 @@ class Geometry:
         """The same gap as means over its cells, which at rims count as far as they are covered."""
         return replace(self, body=cell_means(self.body), cells="covered")
 
+    def on_long_cells(self) -> "Geometry":
+        """The same gap at points of every second row, the middle one among them: cells are twice as long."""
+        dx, dy = self.spacing
+        return replace(self, body=self.body[len(self.body) // 2 % 2 :: 2], spacing=(2.0 * dx, dy))
+
     def within_window(self) -> "Geometry":
         """Bound the states by a contact that the window holds."""
         held = max(FILLED**3 * self.filling_force, self.load)

@@ -28,7 +28,7 @@ from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.scanned_positions import table_stride
 from asperity.scenarios.scanned_states import states_apart, states_around, states_expected
 from asperity.scenarios.scene import PreparedCase
-from asperity.scenarios.textures import Textures, textures_under
+from asperity.scenarios.textures import textures_under
 from asperity.store import Store
 
 
@@ -53,14 +53,25 @@ class ReducedCase(PreparedCase):
         planes = None if path is None else reducing.patch_planes(path, self.shape)
         return replace(self, textures=textures, shape=shape, planes=planes, scans={})
 
+    @property
+    def scanning(self) -> Self:
+        """The same as a law has it whose path is scanned, with planes at its rows."""
+        if not self.has_long_cells or self.planes is None:
+            return super().scanning
+        return replace(super().scanning, planes=self.planes[self.textures.before % 2 :: 2])
+
     def build(self, name: str) -> Law:
         """Build a law of the case by its name, on positions along the path, m."""
-        return built(self._of_law(spec_of(name)))
+        spec = spec_of(name)
+        if Need.SCAN in spec.needs:
+            return built(self.scanning._of_law(spec))
+        return built((self.seeing if spec.sees_heights else self)._of_law(spec))
 
     def _of_law(self, spec: LawSpec) -> Materials:
         case = self.case
         contact = self.case.contact
-        shape, textures = self._seen if spec.sees_heights else (self.shape, self.textures)
+        shape = self.shape
+        textures = self.textures
         made_by: dict[str, Callable[[], Any]] = {
             "line": partial(self._line, spec),
             "areal": self._areal,
@@ -77,10 +88,6 @@ class ReducedCase(PreparedCase):
             contact.hardness, case.numerics.rtol, case.law_parameters(spec.name), made_by,
             shape.cells,
         )  # fmt: skip
-
-    @cached_property
-    def _seen(self) -> tuple[Geometry, Textures]:
-        return self.of_heights
 
     @cached_property
     def _reduced(self) -> reducing.Reduction:
@@ -170,11 +177,11 @@ class ReducedCase(PreparedCase):
             self.progress(which * positions + done, count * positions, message)
 
     def _scan_of(self, state: int, progress: Progress) -> ScannedForces:
-        shape, textures = self._seen
+        shape = self.shape
         job = ScanJob(
-            shape.half_space(self.case.contact.hardness), textures.surface, shape.body,
+            shape.half_space(self.case.contact.hardness), self.textures.surface, shape.body,
             self._reduced.approaches[state], table_stride(self),
-            rtol_for(self.case.numerics.force_accuracy), self._scanned_planes, textures.before,
+            rtol_for(self.case.numerics.force_accuracy), self._scanned_planes, self.textures.before,
         )  # fmt: skip
         told = {"progress": progress, "message": "scanning the path"}
         return scan_forces(job, mapped=True, cache=Store(), **told)
@@ -199,13 +206,8 @@ class ReducedCase(PreparedCase):
         """The scan of the path, to look forces up in."""
         rows = self._scanned_rows
         dx = self.shape.spacing[0]
-        shape, textures = self._seen
-        body = shape.body
-        if textures.defects is not None or shape is not self.shape:
-            touches = first_touch(textures.surface, body, rows.step, rows.start) + self._scanned_planes
-        else:
-            assert self._reduced.touches is not None
-            touches = self._reduced.touches[rows]
+        body = self.shape.body
+        touches = first_touch(self.textures.surface, body, rows.step, rows.start) + self._scanned_planes
         start = self.textures.start + (rows.start + body.shape[0] // 2) * dx
         approaches = self._reduced.approaches[self.to_look_up[self.scanned]]
         return ForceTable(self.path_scan.forces, approaches, start, rows.step * dx, touches)

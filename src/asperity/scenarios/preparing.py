@@ -170,7 +170,8 @@ def scans_of(prepared: PreparedCase, states: Array) -> dict[str, list[ScanJob]]:
         shown = states[(len(states) - 1) % every :: every]
         found["filters"] = scans(strips, shape, shown, reducing.filter_stride(shape), FILTER_SHARE)
     if Need.SCAN in needs_of(case.laws) and textures.path is not None:
-        on, over = prepared.of_heights
+        scanning = prepared.scanning
+        over = scanning.textures
         assert over.path is not None
         visited = list(range(len(states)))
         if case.contact.approaches is None:
@@ -178,7 +179,8 @@ def scans_of(prepared: PreparedCase, states: Array) -> dict[str, list[ScanJob]]:
             if prepared.leaves_states_out:
                 visited = states_apart(forces ** (2.0 / 3.0), forces[None])
             visited = visited[states_expected(states[visited], forces[visited], prepared.scene.loads)]
-        found["path"] = scans([over.path], on, states[visited], table_stride(prepared), 1.0, textures.before)
+        stride = table_stride(scanning)
+        found["path"] = scans([over.path], scanning.shape, states[visited], stride, 1.0, over.before)
     return found
 
 

@@ -34,7 +34,7 @@ from asperity.scenarios import raceway_grids, reducing
 from asperity.scenarios.geometry import HIGHEST_FORCE, Geometry
 from asperity.scenarios.raceway_grids import HALF_WINDOW
 from asperity.scenarios.rim_cells import SMOOTH
-from asperity.scenarios.scanned_positions import OF_TEXTURE, OF_WAVE
+from asperity.scenarios.scanned_positions import OF_SMOOTH, OF_TEXTURE, OF_WAVE
 from asperity.scenarios.scanned_states import states_around, states_expected
 from asperity.store import Store
 from asperity.surfaces.cell_means import pressed_heights
@@ -52,13 +52,8 @@ REMEDIES = "accuracy", "A smaller time step, or a larger static load: windows ho
 """For contacts solved in every step on raceways."""
 SAMPLES = 8
 """Places of a rough raceway whose mean is its force curve."""
-OF_SMOOTH = 2.5
-"""Positions in a half axis, at most, on what is smooth.
-
-Planes hold what is of first order at every row: positions are for the second order alone.
-"""
 OF_SMOOTH_WAVE = 3
-"""Positions in the shortest wave that is looked at there."""
+"""Positions in the shortest wave that is looked at, on what is smooth."""
 FILTER_STRIPS = 4
 """Pieces of a rough raceway on which contact filters are found."""
 FILTER_LENGTH = 60.0

@@ -39,22 +39,15 @@ def with_rims(prepared: PreparedCase) -> PreparedCase:
         return replace(prepared, shape=cells[0], textures=cells[1])
     if len(case.cells_at_rims) == 1:
         return prepared
-    kind, why = _chosen(prepared)
-    return replace(prepared, cells_of_heights=kind, rims=why)
-
-
-def _chosen(prepared: PreparedCase) -> tuple[str, str]:
-    """Kind of cells that suits laws which see heights, and why."""
-    case = prepared.case
-    shape = prepared.shape
-    maps = prepared.textures.maps
     if find_device() is not None:
-        return "whole", "the device gpu has no others"
-    within = roughness_within(samples_of(case, shape, maps, shape.class_axes), shape)
-    smooth = within <= SMOOTH
-    side = "up to" if smooth else "more than"
-    why = f"the texture has {rounded(within, 2)} approaches rms within the contact, {side} {SMOOTH}"
-    return "covered" if smooth else "whole", why
+        return replace(prepared, cells_of_heights="whole", rims="the device gpu has no others")
+    shape = prepared.shape
+    within = roughness_within(samples_of(case, shape, prepared.textures.maps, shape.class_axes), shape)
+    texture = f"the texture has {rounded(within, 2)} approaches rms within the contact"
+    if within > SMOOTH:
+        return replace(prepared, cells_of_heights="whole", rims=f"{texture}, more than {SMOOTH}")
+    why = f"{texture}, up to {SMOOTH}"
+    return replace(prepared, cells_of_heights="covered", rims=why, roughness=within)
 
 
 def stiffness_missed(shape: Geometry) -> float:

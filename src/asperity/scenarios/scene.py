@@ -1,18 +1,21 @@
 """The scene of a case: what rolls and what it is rolled over; its linear force; and a case laid ready."""
 
+import math
 import warnings
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass, field, replace
+from typing import Any, Self
 
 import numpy as np
 
 from asperity.arguments import Array, ArrayLike, Complex, as_row
 from asperity.case.scene import Case
 from asperity.errors import InputError
-from asperity.laws import spec_of
+from asperity.laws import Need, needs_of, spec_of
 from asperity.scenarios.geometry import Geometry
+from asperity.scenarios.long_cells import long_cells_fit
 from asperity.scenarios.textures import Textures
+from asperity.speeds import slowest
 from asperity.structures.body import Body, Wheel
 from asperity.structures.modal import Modal, receptances_between
 from asperity.structures.track import Track
@@ -142,6 +145,8 @@ class PreparedCase:
     # how cells at rims count for laws that see heights, where that was chosen, and why
     cells_of_heights: str | None = None
     rims: str = ""
+    # where those are covered: rms height of the samples within the contact, in approaches
+    roughness: float = math.inf
     caught: tuple[warnings.WarningMessage, ...] = ()  # warnings met on the way
     seconds: dict[str, float] = field(default_factory=dict)  # wall time of each part, s
     processor: float = 0.0  # time that preparing took, s
@@ -151,7 +156,9 @@ class PreparedCase:
         """How cells at rims count, in words: with the laws whose contacts have others than the samples."""
         if self.cells_of_heights != "covered":
             return self.shape.cells
-        return f"covered for {' and '.join(law for law in self.case.laws if spec_of(law).sees_heights)}"
+        covered = f"covered for {' and '.join(law for law in self.case.laws if spec_of(law).sees_heights)}"
+        long = self.has_long_cells and Need.SCAN in needs_of(self.case.laws)
+        return f"{covered}, two rows long where the path is scanned" if long else covered
 
     @property
     def cells_seen(self) -> str:
@@ -173,11 +180,27 @@ class PreparedCase:
         return tuple(dict.fromkeys((self.shape.cells, self.cells_seen)))
 
     @property
-    def of_heights(self) -> tuple[Geometry, Textures]:
-        """Gap of the bodies and textures for laws that see heights, on cells that may be theirs alone."""
+    def seeing(self) -> Self:
+        """The case as laws have it that see heights: on cells that may be theirs alone."""
         if self.cells_of_heights != "covered":
-            return self.shape, self.textures
-        return self.shape.over_cells(), self.textures.over_cells()
+            return self
+        shape = self.shape.over_cells()
+        return replace(self, shape=shape, textures=self.textures.over_cells(), cells_of_heights=None)
+
+    @property
+    def has_long_cells(self) -> bool:
+        """Whether a path is scanned on cells that are two rows long: where such covered ones are as good."""
+        wave = slowest(self.case.speed) / self.case.numerics.highest_frequency
+        return self.cells_of_heights == "covered" and long_cells_fit(self.shape, self.roughness, wave)
+
+    @property
+    def scanning(self) -> Self:
+        """The case as a law has it whose path is scanned."""
+        if not self.has_long_cells:
+            return self.seeing
+        shape = self.shape.on_long_cells().over_cells()
+        textures = self.textures.on_long_cells().over_cells()
+        return replace(self, shape=shape, textures=textures, cells_of_heights=None)
 
     @property
     def chosen(self) -> dict[str, str]:

@@ -26,6 +26,7 @@ from asperity.surfaces.cell_means import PressedStrip, pressed_heights
 from asperity.surfaces.defects import corrugation
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.strip import PIECE, LongStrip, Raised, Rows, Strip, raised, turning
+from asperity.surfaces.thinned import ThinnedStrip
 from asperity.threads import in_order
 from asperity.written_numbers import count_of, rounded
 
@@ -76,6 +77,19 @@ class Textures:
         strips = maps if self.strips is self.maps else tuple(_pressed(each) for each in self.strips)
         path = None if self.path is None else PressedStrip(self.path)
         return replace(self, maps=maps, strips=strips, path=path, points=self)
+
+    def on_long_cells(self) -> "Textures":
+        """The same, with every second row of the path, that where the record starts among them."""
+        assert self.path is not None
+        first = self.before % 2
+        return replace(
+            self,
+            path=ThinnedStrip(self.path, first),
+            line=self.line[first::2],
+            start=self.start + first * self.path.spacing[0],
+            before=self.before // 2,
+            beyond=self.beyond // 2,
+        )
 
     @property
     def averaged(self) -> "Textures":

@@ -129,13 +129,14 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
         clock.book("running in")
     first = reduced_case(run_in, progress)
     clock.book("reduction")
-    every: Sequence[ReducedCase] = [first, *(first.of_contact(*own) for own in others)]
+    every = [first, *(first.of_contact(*own) for own in others)]
+    scanned: Sequence[ReducedCase] = [each.scanning for each in every]
     once = partial(_rolled, prepared, over, which, progress)
     visited = partial(_visited, len(every))
     runs: dict[str, RolledBodies] = {}
     for name in case.laws:
         if Need.SCAN in spec_of(name).needs:
-            runs[name], every = within_scan(partial(once, name), every, visited)
+            runs[name], scanned = within_scan(partial(once, name), scanned, visited)
         else:
             runs[name] = once(name, every)
         clock.book(f"law {name}")
@@ -145,8 +146,8 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
     if bare is not None and steady and isinstance(prepared.scene.over, Track) and np.ptp(first.textures.line):
         bare_force = (runs[bare] if bare in runs else once(bare, every)).contact_force
         clock.book("what CNOSSOS-EU's sound power is of")
-    scan = every[0].path_scan if Need.SCAN in needs_of(case.laws) else None
-    unused = replace(first, seconds=clock.seconds, states=every[0].states)
+    scan = scanned[0].path_scan if Need.SCAN in needs_of(case.laws) else None
+    unused = replace(first, seconds=clock.seconds, states=scanned[0].states)
     computed = Computed(
         **vars(unused), over=over, runs=runs, scan=scan, running_in=ran, bare_force=bare_force
     )
