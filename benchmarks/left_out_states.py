@@ -1,20 +1,23 @@
-"""How far the table of a wheel moves its force by the states that are left out of its scan.
+"""How far the table of a wheel moves its force by what is left out of its scan: states, positions and rows.
 
-    python benchmarks/left_out_states.py            # all cases, in some six minutes of processor time
+    python benchmarks/left_out_states.py            # all cases, in some fifteen minutes of processor time
     python benchmarks/left_out_states.py template   # those whose names begin so
 
-Each case is rolled by `table` as it is, and with all states; both scan the same positions. Printed are the
-difference of the force in one-third octaves, rms and at most, and the share of the contacts that is left.
+Each case is rolled by `table` as it is; with all states at the same positions; and with the same states at a
+position in every row, on cells that are one row long. Printed are the differences of the force in one-third
+octaves from each of these, rms and at most, and the share of the contacts that is left.
 """
 
 import argparse
 import warnings
+from contextlib import ExitStack
+from unittest.mock import patch
 
 import numpy as np
 
 from asperity.case.cases import parse_case, template
 from asperity.running import prepare_case
-from asperity.scenarios import laws
+from asperity.scenarios import laws, scene
 from asperity.scenes.compute import compute
 
 SHORT = {"duration": "0.4 s"}
@@ -36,32 +39,41 @@ def every_state(approaches, _):
     return list(range(len(approaches)))
 
 
-def rolled(case, states):
+def rolled(case):
     """Levels of the force in bands, dB, and how many contacts were solved for them."""
-    laws.states_apart = states
     computed = compute(prepare_case(case), lambda *_: None)
     return np.array(computed.force_levels[0]), computed.scan.counts.solved
 
 
 def main():
-    """Roll the cases that are asked for, and print a line for each."""
+    """Roll the cases that are asked for, and print a line for each thing that is left out."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("name", nargs="?", default="", help="how the names of cases begin")
     asked = parser.parse_args().name
     warnings.simplefilter("ignore")
-    apart = laws.states_apart
+    left_out = {
+        "states": [patch.object(laws, "states_apart", every_state)],
+        "positions and rows": [
+            patch.object(laws, "table_stride", lambda _: 1),
+            patch.object(scene, "long_cells_fit", lambda *_: False),
+        ],
+    }
     for name, changes in CASES.items():
         if not name.startswith(asked):
             continue
         case = parse_case(template("wheel-on-rail")).with_(laws=["table"], **changes)
-        levels, contacts = rolled(case, apart)
-        exact, of_all = rolled(case, every_state)
-        off = levels - exact
-        print(
-            f"{name:26} {np.sqrt(np.mean(off**2)):.3f} dB rms, {np.abs(off).max():.2f} dB at most, "
-            f"{contacts / of_all:.2f} of the contacts",
-            flush=True,
-        )
+        levels, contacts = rolled(case)
+        for what, patches in left_out.items():
+            with ExitStack() as stack:
+                for each in patches:
+                    stack.enter_context(each)
+                exact, of_all = rolled(case)
+            off = levels - exact
+            print(
+                f"{name:24} {what:18} {np.sqrt(np.mean(off**2)):.3f} dB rms, {np.abs(off).max():.2f} dB at "
+                f"most, {contacts / of_all:.2f} of the contacts",
+                flush=True,
+            )
 
 
 if __name__ == "__main__":

@@ -106,6 +106,7 @@ def test_long_cells_are_for_what_is_smooth_and_long_against_them():
     for keys in (
         {"contact": {"rim_cells": "covered"}},
         {"contact": {"rim_cells": "whole"}},
+        {"contact": {"hardness": "3 GPa"}},
         {"speed": "28 m/s"},
     ):
         other = wheel(**keys)

@@ -189,9 +189,18 @@ class PreparedCase:
 
     @property
     def has_long_cells(self) -> bool:
-        """Whether a path is scanned on cells that are two rows long: where such covered ones are as good."""
+        """Whether a path is scanned on cells that are two rows long: where such covered ones are as good.
+
+        Not where surfaces flow, nor over flats and joints: these are finer.
+        """
+        if (
+            self.cells_of_heights != "covered"
+            or self.case.contact.hardness is not None
+            or self.case.has_defect
+        ):
+            return False
         wave = slowest(self.case.speed) / self.case.numerics.highest_frequency
-        return self.cells_of_heights == "covered" and long_cells_fit(self.shape, self.roughness, wave)
+        return long_cells_fit(self.shape, self.roughness, wave)
 
     @property
     def scanning(self) -> Self:
