@@ -11,8 +11,8 @@ from asperity.running import prepare_case
 from asperity.scenarios.laws import reduced_case
 from asperity.scenarios.long_cells import long_cells_fit
 from asperity.scenarios.preparing import scans_of
+from asperity.surfaces.second_rows import REACH, SecondRows, every_second
 from asperity.surfaces.strip import Rows
-from asperity.surfaces.thinned import REACH, ThinnedStrip, thinned
 from small_cases import changed
 
 
@@ -32,9 +32,9 @@ def test_thinning_keeps_polynomials_and_long_waves_and_takes_short_ones_off():
     """Rows beside each other are half a sample apart: (1 + interpolation from odd rows) / 2 of a wave."""
     rows = np.arange(60.0)
     quintic = polynomial.polyval(rows / 60.0, [0.3, -2.0, 1.0, 4.0, -1.5, 2.5])[:, None]
-    np.testing.assert_allclose(thinned(quintic, REACH, 25), quintic[REACH : REACH + 50 : 2], atol=1e-13)
+    np.testing.assert_allclose(every_second(quintic, REACH, 25), quintic[REACH : REACH + 50 : 2], atol=1e-13)
     for waves, left in ((16.0, 0.9994), (10.0, 0.9924), (4.0, 0.5), (2.5, 0.0076), (2.0, 0.0)):
-        found = thinned(np.cos(2.0 * np.pi * rows / waves)[:, None], REACH, 25)[:, 0]
+        found = every_second(np.cos(2.0 * np.pi * rows / waves)[:, None], REACH, 25)[:, 0]
         expected = left * np.cos(2.0 * np.pi * (REACH + 2.0 * np.arange(25)) / waves)
         np.testing.assert_allclose(found, expected, atol=1e-4)
 
@@ -43,12 +43,12 @@ def test_thinning_keeps_polynomials_and_long_waves_and_takes_short_ones_off():
 @pytest.mark.parametrize("count", [40, 41])
 def test_pieces_of_a_thinned_strip_are_those_of_the_whole(first, count):
     heights = np.random.default_rng(3).standard_normal((count, 3))
-    strip = ThinnedStrip(Rows(heights, (0.5, 0.25)), first)
+    strip = SecondRows(Rows(heights, (0.5, 0.25)), first)
     assert strip.shape == (len(heights[first::2]), 3)
     assert strip.spacing == (1.0, 0.25)
     every = strip.rows(0, strip.shape[0])
     inside = heights[first + 6 - REACH : first + 6 + 2 * 8 + REACH]
-    np.testing.assert_allclose(every[3:11], thinned(inside, REACH, 8), atol=1e-15)
+    np.testing.assert_allclose(every[3:11], every_second(inside, REACH, 8), atol=1e-15)
     for begin, stop in ((0, 1), (2, 9), (strip.shape[0] - 3, strip.shape[0])):
         np.testing.assert_allclose(strip.rows(begin, stop), every[begin:stop], atol=1e-15)
 

@@ -219,7 +219,7 @@ def test_defects_are_covered_likewise_with_mean_heights(defect):
     made = prepared(**WHEEL, **keys, cells="auto")
     assert made.cells_of_heights == "covered"
     assert made.rims.endswith("within the contact, up to 0.1")
-    shape, seen = made.of_heights
+    shape, seen = made.seeing.shape, made.seeing.textures
     defects, (spacing, _) = seen.defects, shape.spacing
     at = seen.rows_along(spacing)
     heights = whole(seen.surface) - whole(seen.path)

@@ -62,7 +62,7 @@ def prepare(case: Case, source: str = "case") -> PreparedCase:
                 made.append(make())
             except InputError as error:
                 errors.append(by_key(case, error))
-        refuse(errors, source)
+        refuse(list({str(error): error for error in errors}.values()), source)  # threads are asked twice
         prepared = PreparedCase(case, *made[:3])
         if (smaller := _within_the_map(case, prepared.textures)) is not None:
             refuse(_problems_of_narrow_maps(smaller, prepared.shape), source)

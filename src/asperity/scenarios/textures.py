@@ -25,8 +25,8 @@ from asperity.surfaces import levelling, statistics, synthesis
 from asperity.surfaces.cell_means import PressedStrip, pressed_heights
 from asperity.surfaces.defects import corrugation
 from asperity.surfaces.heightmap import HeightMap, Profile
+from asperity.surfaces.second_rows import SecondRows
 from asperity.surfaces.strip import PIECE, LongStrip, Raised, Rows, Strip, raised, turning
-from asperity.surfaces.thinned import ThinnedStrip
 from asperity.threads import in_order
 from asperity.written_numbers import count_of, rounded
 
@@ -84,7 +84,7 @@ class Textures:
         first = self.before % 2
         return replace(
             self,
-            path=ThinnedStrip(self.path, first),
+            path=SecondRows(self.path, first),
             line=self.line[first::2],
             start=self.start + first * self.path.spacing[0],
             before=self.before // 2,

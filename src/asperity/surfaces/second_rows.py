@@ -11,7 +11,7 @@ REACH = 5
 """Rows on either side that a row is made of."""
 
 
-def thinned(heights: Array, first: int, count: int) -> Array:
+def every_second(heights: Array, first: int, count: int) -> Array:
     """Heights (count, ny), m, of every second row of heights (rows, ny), m, from a row on.
 
     Half of each is its own, half what its neighbours on either side say of it by polynomials of the fifth
@@ -27,7 +27,7 @@ def thinned(heights: Array, first: int, count: int) -> Array:
     return rows
 
 
-class ThinnedStrip:
+class SecondRows:
     """A strip with every second row of another one, from one of its first two on."""
 
     def __init__(self, strip: Strip, first: int) -> None:
@@ -45,4 +45,4 @@ class ThinnedStrip:
         known = self.strip.rows(*held)
         beyond = [(held[0] - begin, end - held[1]), (0, 0)]
         closed = np.pad(known, beyond, mode="reflect", reflect_type="odd")
-        return thinned(closed, REACH, stop - first)
+        return every_second(closed, REACH, stop - first)
