@@ -4,9 +4,9 @@ import math
 from collections.abc import Iterable
 
 import numpy as np
+import scipy
 from numpy.polynomial.chebyshev import chebpts1, chebvander
 from scipy.fft import irfft, next_fast_len, rfft
-from scipy.ndimage import correlate1d
 
 from asperity.arguments import Array, ArrayLike, Complex, finite_array
 from asperity.progress import Progress, counted
@@ -69,7 +69,7 @@ def passed_points(
         displacement[..., steps] += moved
     displacement = displacement.swapaxes(0, 1)
     padded = np.pad(displacement, ((0, 0), (0, 0), (3, 3)), mode="reflect", reflect_type="odd")
-    velocity = correlate1d(padded, DIFFERENCE / kernel.time_step)[..., 3:-3]
+    velocity = scipy.ndimage.correlate1d(padded, DIFFERENCE / kernel.time_step)[..., 3:-3]
     return displacement[..., settled:], velocity[..., settled:]
 
 
