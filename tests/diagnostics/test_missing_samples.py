@@ -149,6 +149,23 @@ def test_what_tones_do_not_foretell_is_left_out_where_it_is_too_seldom_for_blows
     assert unforetold(often, often.size / TURN).tolist() == NONE.tolist()
 
 
+@pytest.mark.parametrize("samples", [21_000, 24_000, 30_000])
+@pytest.mark.parametrize(("size", "noise"), [(1, 1e-4), (2, 3e-4)])
+def test_samples_that_are_held_again_and_again_are_no_blows(samples, size, noise):
+    """They are 9 to 18 times the rms of the noise, by which nothing was left out and a ball was struck."""
+    signal = (tone(SPEED) + noise * NOISE)[:samples]
+    signal = without(signal, "held", range(500, samples - 2_000, 1_024), size)
+    found = diagnose(signal, RATE, TONES, SPEED)
+    assert (found.parts, found.blows) == ((), 0.0)
+    assert "the signal is not what its tones foretell" in diagnosis_sentence(found)
+
+
+def test_few_of_many_blows_that_stand_out_are_not_left_out():
+    """A single one of 270 is 4 times as large as what noise often reaches, and 34 are 2.7 times as large."""
+    signal = faulty_signal("ball", SPEED, RATE, 2.0, noise=0.1) + 20.0 * tone(SPEED)[:24_000]
+    assert unforetold(signal, signal.size / TURN).tolist() == NONE.tolist()
+
+
 def test_a_record_of_gaps_that_leave_too_little_is_refused_with_what_is_left():
     signal = without(NOISE, "held", range(300, 35_900, 400), 100)
     with pytest.raises(
