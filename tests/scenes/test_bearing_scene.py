@@ -134,6 +134,14 @@ def test_what_runs_of_the_parts_doubt_is_not_told_beside_the_run_of_the_bearing(
     assert json.loads(told)
 
 
+@pytest.mark.filterwarnings("error")
+def test_what_is_doubted_of_a_bearing_that_is_laid_ready_is_kept_and_not_said():
+    """So that parts, which are laid ready beside the run of the bearing, say nothing of it again."""
+    inner, outer = prepare_bearing(as_case(BEARING | {"radial": "3 kN"})).caught
+    assert "of one ball on the inner ring the contact fills" in str(inner.message)
+    assert "of one ball on the outer ring the contact fills" in str(outer.message)
+
+
 def test_bands_beyond_the_sampling_are_missing_and_a_band_that_is_given_is_taken():
     keys = {"duration": "1 s", "sampling_rate": "12.8 kHz", "envelope_band": ["4 kHz", "5 kHz"]}
     case = as_case(SMOOTH | keys)

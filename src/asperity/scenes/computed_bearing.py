@@ -185,9 +185,8 @@ def _textured(case: BearingUnderLoad) -> list[str]:
 
 
 def _without(case: BearingUnderLoad, left_out: dict[str, None]) -> PreparedBearing:
-    """A case by `BY_PARTS`, some sections left out, laid ready; of the whole bearing it has been warned."""
-    with PhysicsWarning.ignored():
-        return prepare_bearing(case.with_(laws=[BY_PARTS], **left_out))
+    """A case by `BY_PARTS`, some sections left out, laid ready."""
+    return prepare_bearing(case.with_(laws=[BY_PARTS], **left_out))
 
 
 def _acceleration(prepared: PreparedBearing) -> Array | None:
