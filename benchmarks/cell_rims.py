@@ -7,6 +7,7 @@
     python benchmarks/cell_rims.py --fresh    # likewise, textures that nothing was chosen by
     python benchmarks/cell_rims.py --caps     # smooth balls with a hardness, against finer grids
     python benchmarks/cell_rims.py --raceways # a ball in the groove of a 6205, against finer grids
+    python benchmarks/cell_rims.py --elongated # iterations on cells that are wider than long
     python benchmarks/cell_rims.py --cost     # time and iterations against those of whole cells, in turn
 
 The contact of a ball on a half-space is known in closed form: half-width, approach, radius and modulus E*
@@ -25,11 +26,14 @@ fitted likewise, to contacts solved with these, and both of its parts are kept: 
 import argparse
 import math
 import time
+import warnings
+from unittest.mock import patch
 
 import numpy as np
 from scan_step import MODULUS, problem
 
 from asperity import BallBearing, HalfSpace, Hertz
+from asperity.contact import elastic_grid
 from asperity.contact.scan import ScanJob, scan_forces
 from asperity.kernels.batched import convolve_padded, padded_spectrum
 from asperity.kernels.influence import means_table
@@ -392,6 +396,42 @@ def check_raceways(positions=6):
             print(row + f"| {math.sqrt(np.mean(steps**2)):.2f} | {np.abs(steps).max():.2f} |", flush=True)
 
 
+def check_elongated(contacts=40):
+    """Print iterations of ellipses of 8 by 16 and 6 by 9 cells that are wider than long."""
+    print("| wide over long | half axes | rms | iterations | most | not converged |\n" + 6 * "|---" + "|")
+    for elongation in (1.0, 2.0, 4.0, 5.0, 6.0, 8.0):
+        for axes in ((8.0, 16.0), (6.0, 9.0)):
+            for height in (0.0, 0.02, 0.1):
+                rng = np.random.default_rng(5)
+                found = [ellipse_on(elongation, axes, height, rng) for _ in range(contacts)]
+                taken = [each.iterations for each in found]
+                row = f"| {elongation:g} | {axes[0]:g} × {axes[1]:g} | {height} | {np.mean(taken):.1f} "
+                print(row + f"| {max(taken)} | {sum(not each.converged for each in found)} |", flush=True)
+
+
+def ellipse_on(elongation, axes, height, rng):
+    """A contact of so many cells in its half axes at a random place, of a rms height in approaches."""
+    a, b = axes[0], axes[1] * elongation
+    x, y = (
+        (np.arange(-n, n + 1) + rng.random() - 0.5) * side
+        for n, side in zip(np.ceil(1.7 * np.array(axes)), (1.0, elongation), strict=True)
+    )
+    curvature = (1.0 / a**2, (1.0 / a**2) * (b / a) ** -1.5)
+    gap = 0.5 * np.add.outer(curvature[0] * x**2, curvature[1] * y**2)
+    waves = np.exp(rng.uniform(np.log(0.5), np.log(4.0), 40))
+    texture = np.zeros_like(gap)
+    for wave in waves:
+        angle, phase = rng.uniform(0.0, 2.0 * math.pi, 2)
+        along = np.add.outer(math.cos(angle) * x, math.sin(angle) * y) / a
+        texture += wave**0.8 * np.cos(2.0 * math.pi / wave * along + phase)
+    texture *= height / math.sqrt(0.5 * np.sum(waves**1.6))
+    with patch.object(elastic_grid, "MOST_ELONGATED", math.inf):
+        space = HalfSpace(gap.shape, (1.0, elongation), 1.0, cells="covered")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return space.solve(gap + texture, approach=rng.uniform(0.4, 1.3), rtol=1e-6)
+
+
 def cost(rounds=21):
     """Print time and iterations of scans of 64 contacts, and of 8 approaches at each, against whole cells."""
     print(
@@ -428,6 +468,7 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     work = {"check": check, "rough": check_rough, "choice": check_choice}
     work |= {"fresh": check_fresh, "caps": check_caps, "raceways": check_raceways, "cost": cost}
+    work |= {"elongated": check_elongated}
     chosen = parser.add_mutually_exclusive_group()
     for name, function in work.items():
         chosen.add_argument(f"--{name}", dest="work", action="store_const", const=function)

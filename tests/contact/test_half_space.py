@@ -172,6 +172,12 @@ def groove(*arguments):
 
 
 test_messages = refusals(
+    (
+        HalfSpace,
+        ((8, 8), (1e-5, 1.6e-6), 1e11),
+        {"cells": "covered"},
+        "spacing of the half-space: received covered cells of 10 um × 1.6 um; allowed: sides up to 1 : 6",
+    ),
     (HalfSpace, ((0, 4), 1.0, 1.0), {}, "half-space shape: received 0; allowed: two positive whole"),
     (HalfSpace, ((4, 4), (1.0, -1.0), 1.0), {}, "half-space spacing: received -1.0"),
     (HalfSpace, ((4, 4), 1.0, 0.0), {}, "contact modulus: received 0.0.*Steel on steel has 115e9"),

@@ -109,6 +109,9 @@ def test_cells_are_whole_where_surfaces_are_rough_or_have_faults():
     assert cells(rough(20 * NM, radius=1.0 * MM)) == "whole"
     assert cells(smooth, raceway_on(CONTACT, LOAD, 0.7 * MM, faults=(pit,))) == "whole"
     assert cells(smooth, replace(smooth, heights=20.0 * smooth.heights)) == "whole"
+    along = smooth.spacing[0]
+    assert cells(replace(smooth, spacing=(along, 6.0 * along))) == "covered"
+    assert cells(replace(smooth, spacing=(along, 6.1 * along))) == "whole"
 
 
 def test_heights_are_pressed_as_means_across_the_end_of_a_turn():

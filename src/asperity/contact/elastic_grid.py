@@ -26,6 +26,11 @@ from asperity.written_numbers import in_newtons, rounded
 
 MAX_ITERATIONS = 2000
 CELLS = ("covered", "whole")
+MOST_ELONGATED = 6.0
+"""Sides of covered cells over each other, at most: iterations rise from 11 to 21 up to there.
+
+With eight a contact takes hundreds, and some none that suffices (``benchmarks/cell_rims.py --elongated``).
+"""
 """What `cells` may be."""
 
 
@@ -58,6 +63,12 @@ class ElasticGrid:
         covers = cells == "whole" or boundary == "free"
         remedy = "What the rim of a contact leaves is known of pressures on cells, and not of their waves."
         require(covers, "cells of a periodic half-space", repr(cells), "'whole'", remedy)
+        elongation = max(self.spacing) / min(self.spacing)
+        received = f"covered cells of {' × '.join(written(each, 'm', 'um') for each in self.spacing)}"
+        allowed = f"sides up to 1 : {MOST_ELONGATED:g}"
+        remedy = 'Refine the longer side, or take cells="whole".'
+        covers = cells == "whole" or elongation <= MOST_ELONGATED
+        require(covers, "spacing of the half-space", received, allowed, remedy)
         reach_x, reach_y = (fourier.smooth_length(max(n, 32)) for n in self.shape)
         dx, dy = self.spacing
         scale = math.pi * self.modulus

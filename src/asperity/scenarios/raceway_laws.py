@@ -12,6 +12,7 @@ import numpy as np
 from asperity.arguments import Array, ArrayLike, Flags, Indices, NDArray, positive
 from asperity.contact import scan
 from asperity.contact.batched import find_device
+from asperity.contact.elastic_grid import MOST_ELONGATED
 from asperity.contact.halfspace import HalfSpace
 from asperity.contact.hertz import Hertz
 from asperity.contact.pressed import at_load
@@ -187,9 +188,11 @@ class OnRaceway:
     def seen(self) -> Geometry:
         """The gap as laws have it that see heights: over cells that are covered in part, or whole ones.
 
-        Covered where the case `auto` of `contact.rim_cells` has them: on what is smooth and has no faults.
+        Covered where the case `auto` of `contact.rim_cells` has them: on what is smooth and has no faults, as
+        long as cells are not too slender for them.
         """
-        covered = self.roughness <= SMOOTH and find_device() is None
+        long, wide = self.surface.spacing
+        covered = self.roughness <= SMOOTH and find_device() is None and wide <= MOST_ELONGATED * long
         return self.shape.over_cells() if covered else self.shape
 
     def pressed(self, heights: Array, beyond: int) -> Array:
