@@ -125,9 +125,12 @@ def test_heights_are_pressed_as_means_across_the_end_of_a_turn():
 
 def test_positions_on_smooth_raceways_have_the_levels_of_every_row():
     surface = rough(30 * NM, radius=0.6 * MM / 2 / np.pi)
-    every, on = (OnRaceway(CONTACT, surface, LOAD, shortest=wave) for wave in (0.0, 1.0))
+    alike = {"least_load": 0.5 * LOAD}
+    every, on = (OnRaceway(CONTACT, surface, LOAD, shortest=wave, **alike) for wave in (0.0, 1.0))
     assert every.scanned_stride == 1
     assert on.scanned_stride == 3
+    for least in (0.0, 0.49 * LOAD):  # balls that carry less have shorter patches
+        assert OnRaceway(CONTACT, surface, LOAD, shortest=1.0, least_load=least).scanned_stride == 2
     places = np.arange(len(surface.heights)) * surface.spacing[0]
     found, exact = (np.fft.rfft(force(each.build("table"), places, APPROACH)) for each in (on, every))
     waves = surface.circumference / np.arange(1, 7)
@@ -141,7 +144,8 @@ def test_positions_on_long_smooth_raceways_have_the_bands_of_every_row(rms):
     texture = AroundTexture(roughness=rms, longest=0.3 * MM, shortest=0.06 * MM)
     surface = raceway_on(CONTACT, LOAD, 1.5 * MM, texture, seed=4)
     wave = 1.6 * ALONG
-    every, on = (OnRaceway(CONTACT, surface, LOAD, shortest=each) for each in (0.0, wave))
+    alike = {"least_load": LOAD}
+    every, on = (OnRaceway(CONTACT, surface, LOAD, shortest=each, **alike) for each in (0.0, wave))
     assert (every.scanned_stride, on.scanned_stride) == (1, 3)
     assert on.roughness == pytest.approx(rms / APPROACH, rel=0.1)
     places = np.arange(len(surface.heights)) * surface.spacing[0]
@@ -186,7 +190,8 @@ def test_force_closes_around_a_rough_raceway():
 
 def test_states_and_positions_that_a_motion_asks_for_have_the_forces_of_all():
     surface = rough(20 * NM, radius=0.1 * MM)
-    every, on = (OnRaceway(CONTACT, surface, LOAD, shortest=wave) for wave in (0.0, 0.8 * ALONG))
+    alike = {"least_load": LOAD}
+    every, on = (OnRaceway(CONTACT, surface, LOAD, shortest=wave, **alike) for wave in (0.0, 0.8 * ALONG))
     assert on.scanned_stride == 2 * every.scanned_stride
     states = on.states_under(0.8 * LOAD, LOAD)
     few, whole = on.build("table", states), every.build("table")

@@ -8,7 +8,7 @@ import asperity
 from asperity.case.cases import as_case
 from asperity.running import prepare_case
 from asperity.scenarios import compiling, raceway_laws, run_time
-from asperity.scenarios.prepared_bearing import CELL_TIME, expected
+from asperity.scenarios.prepared_bearing import CELL_TIME, expected, raceways_of
 from small_cases import BEARING
 
 BALLS = 9
@@ -46,6 +46,17 @@ def test_a_plan_says_how_cells_at_rims_count_and_compiles_both_kinds(monkeypatch
     assert "cells at rims" not in dict(rows)
     longer = work.compiling - blind.compiling
     assert longer == pytest.approx(run_time.pace() * compiling.CELLS_TIME["covered"])
+
+
+def test_a_raceway_knows_the_ball_that_carries_least():
+    """On it hangs how far apart positions of its scan may lie."""
+    across = prepare_case(as_case({**BEARING, "radial": "100 N", "axial": "0 N"}))
+    along = prepare_case(as_case({**BEARING, "radial": "0 N", "axial": "100 N"}))
+    for prepared, alike in ((across, False), (along, True)):
+        static = prepared.case.static
+        ons = raceways_of(prepared, None)
+        assert [each.least_load for each in ons] == [static.inner_load.min(), static.outer_load.min()]
+        assert all((each.least_load >= 0.5 * each.load) is alike for each in ons)
 
 
 def test_what_is_told_of_a_law_that_solves_every_step_is_at_most_all_balls_on_both_rings():

@@ -136,16 +136,21 @@ def raceways_of(prepared: PreparedBearing, progress: Progress | None) -> list[On
     case = prepared.case
     of = prepared.case.bearing.bearing
     share = slowest(case.speed) / case.speed
-    each = zip(case.contacts, prepared.raceways, case.dampings, case.passing_speeds, strict=True)
+    of_rings = case.contacts, prepared.raceways, case.dampings, case.passing_speeds, _least(case)
     return [
         on_surface(
             smooth, surface, load, damping=damping, hardness=of.hardness,
             cache=Store(), progress=progress,
-            shortest=share * speed / case.highest_frequency,
+            shortest=share * speed / case.highest_frequency, least_load=least,
             parameters={law: case.law_parameters(law) for law in case.laws},
         )
-        for (smooth, load), surface, damping, speed in each
+        for (smooth, load), surface, damping, speed, least in zip(*of_rings, strict=True)
     ]  # fmt: skip
+
+
+def _least(case: BearingUnderLoad) -> tuple[float, float]:
+    """Least static load of a ball or roller on the inner and on the outer raceway, N."""
+    return float(case.static.inner_load.min()), float(case.static.outer_load.min())
 
 
 def law_on_raceway(prepared: PreparedBearing, name: str, ring: str) -> Law:

@@ -60,6 +60,14 @@ def states_around(approaches: Array, visited: tuple[float, float]) -> slice:
     return slice(max(min(first, end - FEWEST), 0), end)
 
 
+def place_between(value: float, rising: Array, places: Array) -> float:
+    """Place at which values (k,), k ≥ 2, that rise with places are one, straight between and beyond them."""
+    at = int(np.clip(np.searchsorted(rising, value), 1, len(rising) - 1))
+    step = max(float(rising[at] - rising[at - 1]), 1e-3 * float(rising[-1]))
+    share = (value - float(rising[at - 1])) / step if step > 0.0 else 1.0
+    return float(places[at - 1] + share * (places[at] - places[at - 1]))
+
+
 class Scanned(Protocol):
     """What a law looks its forces up in, scanned in some states."""
 
