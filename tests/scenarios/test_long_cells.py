@@ -61,6 +61,8 @@ def test_long_cells_of_a_smooth_wheel_have_the_stiffness_of_hertz(reduced):
     assert np.unravel_index(np.argmin(shape.body), shape.body.shape) == tuple(
         n // 2 for n in shape.body.shape
     )
+    narrower = replace(reduced.shape, body=reduced.shape.body[1:-1]).on_long_cells().body
+    assert np.argmin(narrower.min(axis=1)) == len(narrower) // 2 != len(reduced.shape.body) // 4
     space, hertz = shape.half_space(None), shape.hertz
     for approach in hertz.approach(shape.load) * np.linspace(0.9, 1.1, 15):
         solved = space.solve(shape.body, approach, rtol=1e-8)
@@ -86,6 +88,10 @@ def test_a_path_scanned_on_long_cells_has_the_forces_of_cells_of_one_row(reduced
         gap = reduced.seeing.shape.body - reduced.seeing.textures.path.rows(window, window + count)
         approach = reduced.reduction.approaches[state] + reduced.plane.heights[0][middle]
         expected.append(space.solve(gap, approach, rtol=1e-8).force)
+    places = reduced.textures.start + reduced.shape.spacing[0] * middles
+    for table in (scanning._table(), reduced.build("table").table):
+        assert table.start == pytest.approx(places[0], abs=1e-9)
+        assert table.spacing == pytest.approx(places[1] - places[0])
     off = found[:60] / np.array(expected) - 1.0
     assert -2e-3 < off.mean() < 1e-4
     assert off.std() < 4e-4
@@ -95,6 +101,7 @@ def test_long_cells_are_for_what_is_smooth_and_long_against_them():
     made = wheel()
     assert made.has_long_cells
     assert made.rim_cells == "covered for table, two rows long where the path is scanned"
+    assert wheel(laws=["direct"]).rim_cells == "covered for direct"
     job = scans_of(made, np.linspace(0.0, 1e-4, 16))["path"][0]
     assert job.body.shape == (len(made.shape.body) // 2 // 2 * 2 + 1, made.shape.body.shape[1])
     wave = 16.0 * made.shape.spacing[0]
@@ -108,6 +115,7 @@ def test_long_cells_are_for_what_is_smooth_and_long_against_them():
         {"contact": {"rim_cells": "whole"}},
         {"contact": {"hardness": "3 GPa"}},
         {"speed": "28 m/s"},
+        {"surface": {"spectrum": "iso3095", "lateral": 1.0, "joint_depth": "1 mm", "joint_length": "0.1 m"}},
     ):
         other = wheel(**keys)
         assert not other.has_long_cells
