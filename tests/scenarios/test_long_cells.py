@@ -92,6 +92,7 @@ def test_a_path_scanned_on_long_cells_has_the_forces_of_cells_of_one_row(reduced
     for table in (scanning._table(), reduced.build("table").table):
         assert table.start == pytest.approx(places[0], abs=1e-9)
         assert table.spacing == pytest.approx(places[1] - places[0])
+        np.testing.assert_array_equal(table.forces[1], found)
     off = found[:60] / np.array(expected) - 1.0
     assert -2e-3 < off.mean() < 1e-4
     assert off.std() < 4e-4
