@@ -55,10 +55,10 @@ class ReducedCase(PreparedCase):
 
     @property
     def scanning(self) -> Self:
-        """The same as a law has it whose path is scanned, with planes at its rows."""
+        """The same as a law has it whose path is scanned, with planes at its rows and scans of its own."""
         if not self.has_long_cells or self.planes is None:
             return super().scanning
-        return replace(super().scanning, planes=self.planes[self.textures.before % 2 :: 2])
+        return replace(super().scanning, planes=self.planes[self.textures.before % 2 :: 2], scans={})
 
     def build(self, name: str) -> Law:
         """Build a law of the case by its name, on positions along the path, m."""
