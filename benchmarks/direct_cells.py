@@ -112,6 +112,7 @@ TRIED = {
     "whole": ("whole", 1),
     "auto": ("auto", 1),
     "covered": ("covered", 1),
+    "larger": ("covered", 0.8),
     "coarse": ("covered", 2 / 3),
 }
 """Cells at rims, and how much finer the grid is than that of the case."""

@@ -191,10 +191,8 @@ def test_other_laws_keep_whole_cells_whichever_are_run_beside_them():
     np.testing.assert_array_equal(whole(beside.textures.path), whole(alone.textures.path))
     for one, other in zip(beside.textures.maps, alone.textures.maps, strict=True):
         np.testing.assert_array_equal(one.heights, other.heights)
-    assert [each._of_law(spec_of("direct")).cells for each in (reduced(beside), reduced(beside).seeing)] == [
-        "whole",
-        "covered",
-    ]
+    assert reduced(beside)._of_law(spec_of("areal")).cells == "whole"
+    assert reduced(beside).build("direct").cells == "covered"
     assert changed("ball-on-beam").contact.rim_cells == "auto"
 
 

@@ -26,12 +26,12 @@ from asperity.written_numbers import in_newtons, rounded
 
 MAX_ITERATIONS = 2000
 CELLS = ("covered", "whole")
+"""What `cells` may be."""
 MOST_ELONGATED = 6.0
 """Sides of covered cells over each other, at most: iterations rise from 11 to 21 up to there.
 
 With eight a contact takes hundreds, and some none that suffices (``benchmarks/cell_rims.py --elongated``).
 """
-"""What `cells` may be."""
 
 
 class ElasticGrid:

@@ -92,9 +92,6 @@ class Reduction:
     filters: "LineFilters"  # of the states that carry load, on their own approaches, by normalisation
     pressed: PressedSamples  # under the working load
     remedy: str  # a window that holds the contacts of all states
-    # (positions,), first touch along the path, before defects are put on it, at every row on which the window
-    # may begin, m; None where the path is a line
-    touches: Array | None
     counts: scan.Counts  # contact solutions done for the filters
 
 
@@ -148,7 +145,7 @@ def reduce(prepared: PreparedCase, planes: Array | None, progress: Progress) -> 
     filters, counts = line_filters(prepared, ensemble, progress)
     scan.warn_of_flaws(counts, "the filters", SCAN_TOLERANCE, remedy)
     axes = np.array([shape.axes(f) for f in mean])
-    return Reduction(approaches, ensemble, datums, axes, filters, pressed, remedy, along, counts)
+    return Reduction(approaches, ensemble, datums, axes, filters, pressed, remedy, counts)
 
 
 def filtered_loads(contact: sections.ContactKeys, shape: Geometry) -> tuple[float, float]:
