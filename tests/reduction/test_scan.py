@@ -168,8 +168,8 @@ def test_single_precision_is_as_accurate_as_the_tolerance(monkeypatch, hardness,
 
 
 def test_tight_tolerances_and_short_scans_stay_in_double():
-    """At 41 × 41 cells, 5e7 cells are 29 744 positions, at however many approaches."""
-    for positions, rtol, single in [(30000, 4e-6, True), (30000, 1e-6, False), (29700, 4e-6, False)]:
+    """At 41 × 41 cells, 3e7 cells are 17 847 positions, at however many approaches."""
+    for positions, rtol, single in [(18000, 4e-6, True), (18000, 1e-6, False), (17800, 4e-6, False)]:
         flat = np.broadcast_to(0.0, (positions + 40, 41))
         for approaches in ([0.1e-6], [0.1e-6, 0.2e-6]):
             assert job(flat, approaches, rtol=rtol).single == single

@@ -34,8 +34,8 @@ from asperity.reduction.texture import StateTexture, areal_texture, punch_weight
 from asperity.scenarios import raceway_grids, reducing
 from asperity.scenarios.geometry import HIGHEST_FORCE, Geometry
 from asperity.scenarios.raceway_grids import HALF_WINDOW
+from asperity.scenarios.raceway_positions import follows_average, forces_between, positions_apart
 from asperity.scenarios.rim_cells import SMOOTH
-from asperity.scenarios.scanned_positions import OF_SMOOTH, OF_TEXTURE, OF_WAVE
 from asperity.scenarios.scanned_states import place_between, states_around, states_expected
 from asperity.store import Store
 from asperity.surfaces.cell_means import pressed_heights
@@ -53,10 +53,6 @@ REMEDIES = "accuracy", "A smaller time step, or a larger static load: windows ho
 """For contacts solved in every step on raceways."""
 SAMPLES = 8
 """Places of a rough raceway whose mean is its force curve."""
-OF_SMOOTH_WAVE = 3
-"""Positions in the shortest wave that is looked at, on what is smooth."""
-ALIKE = 0.5
-"""Least static load of a ball over the largest one from which these do."""
 FILTER_STRIPS = 4
 """Pieces of a rough raceway on which contact filters are found."""
 FILTER_LENGTH = 60.0
@@ -130,21 +126,18 @@ class OnRaceway:
         rms = math.sqrt(float(np.var(self.surface.heights)) + on_balls)
         return rms / self.contact.approach(self.load)
 
+    @property
+    def smooth(self) -> bool:
+        """Whether forces follow the average under the patch between positions of the scan."""
+        return follows_average(self.roughness, self.least_load / self.load)
+
     @cached_property
     def scanned_stride(self) -> int:
-        """Rows between positions of the scan, whole strides: those of a path, see `table_stride`.
-
-        Those on what is smooth have the levels of a position in every row within 0.1 dB, on waves from
-        1.6 half axes on, where all balls are carried alike: patches of others are shorter, and a bearing
-        under a radial load was 0.4 dB rms off.
-        """
+        """Rows between positions of the scan, whole strides, see `positions_apart`."""
         if self.surface.damaged.any():
             return self.stride
-        smooth = self.roughness <= SMOOTH and self.least_load >= ALIKE * self.load
-        in_patch = OF_SMOOTH if smooth else OF_TEXTURE
-        in_wave = OF_SMOOTH_WAVE if smooth else OF_WAVE
-        apart = min(self.axes[0] / in_patch, self.shortest / in_wave) / self.surface.spacing[0]
-        times = max(1, math.floor(apart / self.stride * (1.0 + 1e-3)))
+        apart = positions_apart(self.axes[0], self.shortest, self.roughness, follows=self.smooth)
+        times = max(1, math.floor(apart / (self.stride * self.surface.spacing[0]) * (1.0 + 1e-3)))
         count = len(self.positions)
         return self.stride * next(each for each in range(times, 0, -1) if count % each == 0)
 
@@ -358,12 +351,22 @@ class OnRaceway:
         return {}
 
     def _tabled(self, states: slice) -> ForceTable:
-        stride = self.scanned_stride
-        step = stride * self.surface.spacing[0]
-        touches = self.touches[:: stride // self.stride]
-        forces = self._around(self.scanned_in(states).forces, OVERLAP, axis=1)
-        closed = self._around(touches, OVERLAP)
-        return ForceTable(forces, self.approaches[states], -OVERLAP * step, step, closed)
+        forces = self.scanned_in(states).forces
+        if self.smooth:
+            forces = self._between(forces, states)
+        apart = self.rows // forces.shape[1]
+        step = apart * self.surface.spacing[0]
+        touches = self._around(self.touches[:: apart // self.stride], OVERLAP)
+        closed = self._around(forces, OVERLAP, axis=1)
+        return ForceTable(closed, self.approaches[states], -OVERLAP * step, step, touches)
+
+    def _between(self, forces: Array, states: slice) -> Array:
+        """Forces at all positions, N, of those scanned: between they follow averages under the patch."""
+        approaches = self.approaches[states]
+        axes = [self.contact.semi_axes_under(each) for each in forces.mean(axis=1)]
+        higher = self.averaged(self.surface.heights, axes)[:, self.positions] - self.planes
+        overlap = np.maximum(approaches[:, None] + higher, 0.0)
+        return forces_between(forces, self.contact.stiffness_constant * overlap**1.5)
 
     def states_under(self, least: float, most: float) -> slice:
         """States that are visited under loads between two, N, as far as is known before."""
