@@ -5,7 +5,7 @@ import multiprocessing
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
-from threading import Barrier
+from threading import Barrier, Event
 from unittest.mock import Mock
 
 import numpy as np
@@ -255,6 +255,32 @@ def test_pieces_belong_to_places_on_the_grid(monkeypatch):
     closer = replace(drawn, spacing=(drawn.spacing[0], 0.5 * drawn.spacing[1])).rows(0, 5000)
     assert np.array_equal(closer[:, 2], first[:, 2])  # the middle
     assert not np.array_equal(closer, first)
+
+
+def test_pieces_are_drawn_as_long_as_something_else_is_done(monkeypatch):
+    monkeypatch.setattr(module, "pieces", Fields())
+    third, made, make = Event(), [], module.heights_at
+
+    def counted(*each):
+        made.append(len(each[1]))
+        if len(made) == 3:
+            third.set()
+        return make(*each)
+
+    monkeypatch.setattr(module, "heights_at", counted)
+    long = bands(10**6, seed=79)
+    for threads, drawn in (("1", None), ("2", None), ("1", long)):
+        monkeypatch.setenv("ASPERITY_THREADS", threads)
+        with module.drawn_meanwhile(drawn):
+            pass
+    assert not made
+    monkeypatch.setenv("ASPERITY_THREADS", "2")
+    with module.drawn_meanwhile(long):
+        assert third.wait(60.0)
+    count = len(made)
+    assert count < 10**6 // module.PIECE
+    long.rows(0, 3 * module.PIECE)
+    assert made == count * [module.PIECE]  # what is read is there, and no more is drawn
 
 
 def test_heights_are_added_all_across_or_turn_by_turn():

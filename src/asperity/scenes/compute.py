@@ -33,6 +33,7 @@ from asperity.store import Checkpoint, Store, content_key
 from asperity.structures.modal import Modal
 from asperity.structures.rail_poles import RailBetween, rail_at
 from asperity.structures.track import Track
+from asperity.surfaces.strip import drawn_meanwhile
 
 T = TypeVar("T")
 FORMAT = 3
@@ -119,9 +120,11 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
     """Run the textures of a case in, if it asks for it, reduce its samples, build its laws and roll each."""
     case = prepared.case
     clock = _Clock(prepared.seconds)
-    compiling.compile_kernels(progress, *prepared.kinds_of_cells)  # not before files are known to be right
-    clock.book("compiled functions")
-    over = _in_time(prepared.scene, case, Store(), progress)
+    with drawn_meanwhile(prepared.textures.path):
+        # not before files are known to be right
+        compiling.compile_kernels(progress, *prepared.kinds_of_cells)
+        clock.book("compiled functions")
+        over = _in_time(prepared.scene, case, Store(), progress)
     clock.book("what is rolled over")
     which, others = other_contacts(case, prepared.scene.loads)
     run_in, ran = _run_in(prepared, progress)

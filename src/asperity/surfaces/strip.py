@@ -4,7 +4,8 @@ import os
 import tempfile
 import threading
 import weakref
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import IO, Protocol
 
@@ -12,6 +13,7 @@ import numpy as np
 
 from asperity.arguments import Array
 from asperity.surfaces.tiles import Drawn, fine, heights_at
+from asperity.threads import begun_in_order, refuse_to_go_on
 
 BYTES_KEPT = 2**29
 """Bytes of fields in the file; where there would be more, all are forgotten, and made again when read."""
@@ -175,6 +177,20 @@ def joined_pieces(
         heights[since - start : stop - start] = made(begin, end)[since - begin : stop - begin]
         stop = since
     return heights
+
+
+@contextmanager
+def drawn_meanwhile(strip: Strip | None) -> Iterator[None]:
+    """Draw pieces of a strip that will be read, if any, on a thread while the ``with`` statement runs."""
+    with begun_in_order(_draw, [] if strip is None else [strip]):
+        yield
+
+
+def _draw(strip: Strip) -> None:
+    rows, _ = strip.shape
+    for first in range(0, rows, PIECE):
+        refuse_to_go_on()
+        strip.rows(first, min(first + PIECE, rows))
 
 
 @dataclass(frozen=True, eq=False)
