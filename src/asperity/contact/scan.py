@@ -421,11 +421,11 @@ def first_touch(surface: Array | Strip, body: Array, stride: int = 1, first: int
     strip = Rows(surface) if isinstance(surface, np.ndarray) else surface
     nx = body.shape[0]
     starts = range(first, strip.shape[0] - nx + 1, stride)
-    result = np.empty(len(starts))
     lowest_first = np.argsort(body, axis=None, kind="stable")
     cells = list(zip(body.ravel()[lowest_first], *np.unravel_index(lowest_first, body.shape), strict=True))
-    for done in range(0, len(starts), TOUCHED):
-        block = starts[done : done + TOUCHED]
+
+    def touched(begin: int) -> Array:
+        block = starts[begin : begin + TOUCHED]
         lines = np.ascontiguousarray(strip.rows(block[0], block[-1] + nx).T)
         highest = sliding_window_view(lines.max(axis=0), nx)[::stride].max(axis=1)
         nearest = np.full(len(block), np.inf)
@@ -435,8 +435,10 @@ def first_touch(surface: Array | Strip, body: Array, stride: int = 1, first: int
                 break  # this cell and all that are higher touch nothing first
             under = lines[line, offset : offset + (len(block) - 1) * stride + 1 : stride]
             np.minimum(nearest, np.subtract(height, under, out=gap), out=nearest)
-        result[done : done + len(block)] = nearest
-    return result
+        return nearest
+
+    begins = range(0, len(starts), TOUCHED)
+    return np.concatenate(list(in_order(touched, begins, min(thread_count(), len(begins)))))
 
 
 def labelled(job: ScanJob, scanned: ScannedForces) -> "xarray.DataArray":
