@@ -2,6 +2,7 @@
 
 import base64
 import os
+from collections import deque
 from collections.abc import Sequence
 from html import escape
 from pathlib import Path
@@ -44,6 +45,7 @@ from asperity.schema import bearing as of_bearing
 from asperity.schema import provenance, rolling
 from asperity.schema.spectra import FORCE_LEVEL
 from asperity.text_files import csv_text
+from asperity.threads import in_order
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as MatplotlibFigure
@@ -201,8 +203,12 @@ def _page_in(name: str, path: object) -> Path:
 def write_page(result: xarray.DataTree, target: Path) -> Path:
     """Write the page of a result and, beside it, the numbers of its figures."""
     sections = sections_of(result, chapters())
-    for figure in (figure for section in sections for figure in section.figures):
+
+    def write(figure: PageFigure) -> None:
         write_columns(figure.columns, target.parent / figure.file)
+
+    figures = [figure for section in sections for figure in section.figures]
+    deque(in_order(write, figures), maxlen=0)  # on threads, as each waits for the disk
     return write_bytes(target, page(result, sections, answers_of(result, chapters())).encode())
 
 
