@@ -19,7 +19,6 @@ from asperity.spectra import (
     third_octave_numbers,
 )
 from asperity.speeds import SpeedCourse
-from asperity.surfaces import bands, heightmap
 
 Table = tuple[ArrayLike, ArrayLike]
 """Band centres and levels in dB, each (n,)."""
@@ -149,10 +148,8 @@ def standard_power(computed: compute.Computed) -> Values:
 def _linear(computed: compute.Computed, contact_filter: Table | None) -> tuple[Array, Array]:
     """Sound power of CNOSSOS-EU in the bands for which there are roughness and force."""
     case = computed.case
-    textures = computed.textures
     band = computed.band
-    parts = textures.parts or {"rail": textures.line, "wheel": np.zeros(len(textures.line))}
-    rail, wheel = (_roughness(parts[part], case.contact.spacing) for part in ("rail", "wheel"))
+    rail, wheel = (_roughness(computed, part) for part in ("rail", "wheel"))
     transfers = cnossos.track_transfer(track_label(case)), cnossos.wheel_transfer(wheel_label(case))
     centres, levels = rolling_sound_power(
         case.speed, rail, wheel, *transfers, contact_filter=contact_filter, axles=len(case.contacts_behind)
@@ -161,13 +158,13 @@ def _linear(computed: compute.Computed, contact_filter: Table | None) -> tuple[A
     return centres[shown], levels[:, shown]
 
 
-def _roughness(line: Array, spacing: float) -> Table | None:
-    """Band levels of the line that is rolled over, at the wavelengths of CNOSSOS-EU, where it is rough."""
-    if not np.ptp(line):
+def _roughness(computed: compute.Computed, part: str) -> Table | None:
+    """Band levels of a part of the line that is rolled over, at the wavelengths of CNOSSOS-EU, if rough."""
+    if not np.ptp(computed.textures.parts[part]):
         return None
     known = cnossos.wavelengths()
-    shortest = max(known.min(), 2.0 * spacing * HALF_BAND)
+    shortest = max(known.min(), 2.0 * computed.case.contact.spacing * HALF_BAND)
     longest = known.max()
-    wavelength, level = bands.band_levels_of(heightmap.Profile(line, spacing))
+    wavelength, level = computed.line_levels[part]
     inside = (wavelength > shortest / 1.05) & (wavelength < longest * 1.05)
     return wavelength[inside], np.where(np.isfinite(level), level, EMPTY)[inside]

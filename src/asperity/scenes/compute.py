@@ -33,6 +33,8 @@ from asperity.store import Checkpoint, Store, content_key
 from asperity.structures.modal import Modal
 from asperity.structures.rail_poles import RailBetween, rail_at
 from asperity.structures.track import Track
+from asperity.surfaces.bands import band_levels_of
+from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.strip import drawn_meanwhile
 
 T = TypeVar("T")
@@ -100,6 +102,17 @@ class Computed(ReducedCase, RecordedRuns):
     def bare_levels(self) -> Array | None:
         """Levels of the forces by the bare linear law (c, b), dB re 1 N; None where it was not rolled."""
         return None if self.bare_force is None else self.levels(self.psd(self.bare_force))
+
+    @cached_property
+    def line_levels(self) -> dict[str, tuple[Array, Array]]:
+        """Wavelengths, m, and band levels, dB re 1 µm, of the parts of the line texture and all combined.
+
+        Without flat and joint.
+        """
+        textures = self.textures
+        spacing = self.case.contact.spacing
+        lines = {**textures.parts, "combined": textures.line}
+        return {name: band_levels_of(Profile(line, spacing)) for name, line in lines.items()}
 
 
 class _Clock:

@@ -26,8 +26,6 @@ from asperity.schema import spectra as spectra_schema
 from asperity.speeds import SpeedCourse, at_fastest, slowest
 from asperity.structures.causal_track import causal_track
 from asperity.structures.track import Track, decay_rate, decay_rate_en15461
-from asperity.surfaces.bands import band_levels_of
-from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.synthesis import SelfAffine, line_levels
 from asperity.written_numbers import between, rounded
 
@@ -129,8 +127,7 @@ def _roughness(computed: compute.Computed) -> Values:
     """Band levels of rail and wheel over wavelength, without flat and joint."""
     textures = computed.textures
     spacing = computed.case.contact.spacing
-    lines = {**textures.parts, "combined": textures.line}
-    bands = {name: band_levels_of(Profile(line, spacing)) for name, line in lines.items()}
+    bands = computed.line_levels
     wavelength = bands["combined"][0]
     averaged = spectra.averaging_time(len(textures.line), spacing)
     entry = schema.SURFACE_BAND_LENGTH_PRODUCT
