@@ -69,6 +69,12 @@ class PreparedBearing:
     raceways: tuple[Raceway, Raceway]  # inner and outer one
     balls: tuple[Raceway, ...]  # their surfaces; none where all are smooth
     caught: tuple[warnings.WarningMessage, ...]  # warnings met on the way
+    asked: tuple[Any, ...]  # what each of these surfaces was made of: raceways, then balls
+
+    def surface_of(self, asked: Any) -> Raceway | None:
+        """The surface that was made of the same, if one was."""
+        made = zip(self.asked, (*self.raceways, *self.balls), strict=True)
+        return next((surface for of, surface in made if of == asked), None)
 
     @property
     def chosen(self) -> dict[str, str]:
@@ -86,10 +92,16 @@ def bearing_parts(case: BearingUnderLoad) -> list[tuple[str, Any, float]]:
     ]
 
 
-def prepare_bearing(case: BearingUnderLoad, source: str = "case") -> PreparedBearing:
-    """Load the bearing at rest and lay out what is on its parts; refuse what cannot be."""
+def prepare_bearing(
+    case: BearingUnderLoad, source: str = "case", beside: PreparedBearing | None = None
+) -> PreparedBearing:
+    """Load the bearing at rest and lay out what is on its parts; refuse what cannot be.
+
+    Surfaces that one beside it has, too, are taken from there.
+    """
     errors = list[InputError]()
     made = list[Raceway]()
+    of_surfaces = list[Any]()
     of = case.bearing.bearing
     *parts, balls = bearing_parts(case)
     parts += [balls] * of.balls * (not case.has_smooth_balls)
@@ -99,11 +111,13 @@ def prepare_bearing(case: BearingUnderLoad, source: str = "case") -> PreparedBea
         doubt_bearing(case)
         for number, (name, keys, radius) in enumerate(parts):
             contact, load = case.contacts[min(number, 1)]  # of balls those with the outer ring
-            on_it = (each for each in case.faults.values() if each.lies_on(name, number - 1))
+            on_it = [each for each in case.faults.values() if each.lies_on(name, number - 1)]
             faults = [each.fault for each in on_it if each.fault]
             seed = SEEDS * case.seed + number
+            of_surfaces.append((contact, load, radius, keys, on_it, seed))
+            known = beside and beside.surface_of(of_surfaces[-1])
             try:
-                made.append(raceway_on(contact, load, radius, keys.texture(), faults, seed=seed))
+                made.append(known or raceway_on(contact, load, radius, keys.texture(), faults, seed=seed))
                 doubt_surface(made[-1], contact.approach(load), of.ELEMENT)
             except InputError as error:
                 errors.append(_by_key(case, name, keys, error))
@@ -114,7 +128,7 @@ def prepare_bearing(case: BearingUnderLoad, source: str = "case") -> PreparedBea
                 if name != "ball":
                     doubt_fault(fault, apart, part, of.ELEMENT)
     refuse(errors, source)
-    return PreparedBearing(case, (made[0], made[1]), tuple(made[2:]), tuple(caught))
+    return PreparedBearing(case, (made[0], made[1]), tuple(made[2:]), tuple(caught), tuple(of_surfaces))
 
 
 def _by_key(case: BearingUnderLoad, part: str, keys: AroundKeys, error: InputError) -> InputError:

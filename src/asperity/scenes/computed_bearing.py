@@ -169,7 +169,7 @@ def compute_with_parts(prepared: PreparedBearing, progress: Progress) -> Compute
     if len(case.faults) > 1:
         names[-1] = "the faults"
     others = (dict.fromkeys(key for key in textured if key != kept) for kept in (None, *textured))
-    parts = (_without(case, left_out) for left_out in others)
+    parts = (_without(prepared, left_out) for left_out in others)
     with ExitStack() as beside:
         begin = cache(lambda: beside.enter_context(begun_in_order(_acceleration, parts)))
         computed = compute_bearing(prepared, progress, begin)
@@ -184,9 +184,9 @@ def _textured(case: BearingUnderLoad) -> list[str]:
     return [key for key in map(case.called, ON) if getattr(case, key).given()]
 
 
-def _without(case: BearingUnderLoad, left_out: dict[str, None]) -> PreparedBearing:
+def _without(prepared: PreparedBearing, left_out: dict[str, None]) -> PreparedBearing:
     """A case by `BY_PARTS`, some sections left out, laid ready."""
-    return prepare_bearing(case.with_(laws=[BY_PARTS], **left_out))
+    return prepare_bearing(prepared.case.with_(laws=[BY_PARTS], **left_out), beside=prepared)
 
 
 def _acceleration(prepared: PreparedBearing) -> Array | None:
