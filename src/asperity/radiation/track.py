@@ -12,7 +12,6 @@ from asperity.quadrature import gauss
 from asperity.structures.lateral_rail import LateralTrack
 from asperity.structures.mobility import FEWEST_NODES, ForceOverBay, Mobility
 from asperity.structures.track import Track
-from asperity.threads import in_order
 
 SPEED_OF_SOUND = 343.2
 """m/s; ISO 9613-1:1993, reference for 20 °C."""
@@ -317,16 +316,15 @@ def squared_lateral_mobility(
     count = FEWEST_NODES + int(np.ceil(np.abs(waves.wavenumbers).max() * np.diff(edges).max()))
     node, weight = gauss(count)
 
-    def between(piece: tuple[float, float]) -> Complex:
+    def between(begin: float, end: float) -> Complex:
         """Integral of the products of motions by waves i and j over a piece of the bay, (f, i, j)."""
-        begin, end = piece
         moved = waves.outgoing_at(begin + (end - begin) * node)
         shares = (end - begin) * weight
         weighted = np.einsum("x,ab,fxbj->fxaj", shares, track.mean_squares, moved, optimize=True)
         first, second = (each.reshape(len(omega), -1, each.shape[-1]) for each in (moved, weighted))
         return first.conj().swapaxes(1, 2) @ second
 
-    pieces = np.stack(list(in_order(between, pairwise(edges.tolist()))))
+    pieces = np.stack([between(*each) for each in pairwise(edges.tolist())])
     ahead = np.cumsum(pieces[::-1], axis=0)[::-1]  # from each edge on
     product = waves.multipliers.T.conj()[:, :, None] * waves.multipliers.T[:, None]
     behind = ahead[0] * product / (1.0 - product)

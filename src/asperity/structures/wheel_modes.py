@@ -1,7 +1,6 @@
 """Modes of a wheel as its contact and the air around it feel them: from its section, at rest or turning."""
 
 from collections.abc import Sequence
-from contextlib import closing
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -23,7 +22,7 @@ from asperity.reference.materials import Material
 from asperity.store import Store, content_key, made
 from asperity.structures.outline import Mesh, checked_outline, mesh_of
 from asperity.text_files import write_csv
-from asperity.threads import in_order, one_thread_in_linear_algebra, refuse_to_go_on
+from asperity.threads import one_thread_in_linear_algebra
 
 # Radon's rule of seven points in a triangle, exact to the fifth degree
 _ROOT = np.sqrt(15.0)
@@ -119,13 +118,7 @@ def natural_modes(mesh: Mesh, n: int, material: Material, highest: float, held: 
     # positive definite: no pivots are sought, and half as much is filled in
     how: Any = {"permc_spec": "MMD_AT_PLUS_A", "diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
     factors = splu((stiffness - shift * mass).tocsc(), **how)
-
-    def solved(right: Array) -> Array:
-        refuse_to_go_on()
-        found: Array = factors.solve(right)
-        return found
-
-    inverse = LinearOperator(stiffness.shape, matvec=solved, dtype=np.float64)
+    inverse = LinearOperator(stiffness.shape, matvec=factors.solve, dtype=np.float64)
     while True:
         count = min(count, len(free) - 1)
         squares, found = eigsh(stiffness, count, mass, sigma=shift, v0=start, OPinv=inverse)
@@ -409,21 +402,16 @@ def _found(mesh: Mesh, radius: float, material: Material, highest: float) -> dic
         raise InputError("outline of the section", received, "a seat along the axis", remedy)
     tread, edges = _tread(mesh, radius)
     held = np.repeat(seat[:, None], 3, axis=1)
-
-    def of(n: int) -> tuple[Array, ...]:
+    parts: list[tuple[Array, ...]] = []
+    for n in range(MOST_DIAMETERS + 1):
         frequency, shape = natural_modes(mesh, n, material, highest, held)
+        if n > 1 and not len(frequency):
+            break
         around = 1.0 if n == 0 else np.sqrt(0.5)
         disc = around * np.sqrt(_over_disc(mesh, shape[..., 2])) / radius
         rolled = around * np.sqrt(_mean_square(mesh, edges, shape[..., 0]))
         radial, axial = np.moveaxis(shape[:, tread, ::2], -1, 0)
-        return frequency, np.full(len(frequency), float(n)), disc, rolled, radial, axial
-
-    parts = list[tuple[Array, ...]]()
-    with closing(in_order(of, range(MOST_DIAMETERS + 1))) as found:
-        for part in found:
-            if len(parts) > 1 and not len(part[0]):
-                break
-            parts.append(part)
+        parts.append((frequency, np.full(len(frequency), float(n)), disc, rolled, radial, axial))
     columns = [np.concatenate(each) for each in zip(*parts, strict=True)]
     names = ("frequency", "n", "disc", "tread", "radial", "axial")
     return dict(zip(names, columns, strict=True)) | {"places": mesh.nodes[tread, 1]}
