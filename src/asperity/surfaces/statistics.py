@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
-from itertools import pairwise
+from itertools import pairwise, starmap
 
 import numpy as np
 import scipy
@@ -16,7 +16,6 @@ from asperity.surfaces import cleaning, levelling, spectra, synthesis
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import PIECE
 from asperity.surfaces.strip import Strip
-from asperity.threads import in_order
 from asperity.written_numbers import rounded
 
 SEVEN_POINTS = ((3, 1.0), (2, -9.0), (1, 45.0))
@@ -316,7 +315,7 @@ class StripSurvey:
 
 
 def survey_strip(strip: Strip, segment: int, first: int = 0, stop: int | None = None) -> StripSurvey:
-    """Survey all rows of a strip, reading it twice and never holding more than a piece on each thread.
+    """Survey all rows of a strip, reading it twice and never holding more than a piece.
 
     Complete heights, m; their mean is removed here. Segments of the spectrum have `segment` rows. Pairs of
     points in different pieces do not count towards the autocorrelation, and segments of the spectrum end with
@@ -337,15 +336,14 @@ def survey_strip(strip: Strip, segment: int, first: int = 0, stop: int | None = 
     mean = total / points
     reach = min(end - start for start, end in bounds) // 2
 
-    def sums(piece: tuple[int, int]) -> tuple[Array, ...]:
-        start, end = piece
+    def sums(start: int, end: int) -> tuple[Array, ...]:
         before = max(first, start - MARGIN)
         beyond = min(stop, end + MARGIN)
         rows = strip.rows(before, beyond) - mean
         inner = slice(start - before, end - before)
         return *_sums(rows, inner, strip.spacing, segment), spectra.lag_products(rows[inner], reach)
 
-    added = reduce(lambda these, those: tuple(map(np.add, these, those)), in_order(sums, bounds))
+    added = reduce(lambda these, those: tuple(map(np.add, these, those)), starmap(sums, bounds))
     powers, slopes, densities, segments, products = added
     statistics = []
     if high > low:
