@@ -151,7 +151,7 @@ def _solved(half_space: ElasticGrid, b: Block, positions: slice, device: Device)
     pressure = xp.zeros_like(gap)
     taps = tuple(influence.taps.tolist())
     edges = b.room.edges
-    fields = (edges.softness, edges.drop, edges.flow) if len(edges.softness) else ()
+    fields = (edges.softness, edges.drop, edges.power, edges.flow) if len(edges.softness) else ()
     at_edges = [xp.asarray(each)[rows] for each in fields]
     softest = influence.softest + float(edges.softness.max(initial=0.0)) + edges.yielding
     totals = []

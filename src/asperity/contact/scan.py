@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from asperity.arguments import Array, ArrayLike, finite_array, real, real_array, require, shown, whole
 from asperity.contact.batched import Device, find_device, solve_batched
+from asperity.contact.edges import KEPT
 from asperity.contact.elastic_grid import check_edges
 from asperity.contact.pressed import block_of, solve_block
 from asperity.errors import Grade, TruncatedContactWarning, UnconvergedWarning, percent
@@ -274,7 +275,7 @@ class ScanJob:
         parameters = [list(space.spacing), space.modulus, space.hardness, self.stride, self.rtol]
         parameters += ["batched"] if self.device else ["single"] if self.single else []
         parameters += [] if space.cells == "whole" else [space.cells]
-        sharp = [] if edges is None else [edges.distance, edges.normal, edges.drop]
+        sharp = [] if edges is None else [edges.distance, edges.normal, edges.drop, KEPT]
         return content_key("scan", rows, self.body, self.approaches, planes, *sharp, parameters)
 
     def solve(self, rows: Array, planes: Array, edges: Edges | None = None) -> dict[str, NDArray[Any]]:

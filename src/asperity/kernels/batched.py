@@ -115,10 +115,11 @@ class _Members(NamedTuple):
     length: Array
     iterations: Array
     active: Array
-    # of cells at edges, as in `kernels.edges`, None where there is no edge: softness, m/Pa, drop, m, and
-    # pressure at which they flow, Pa
+    # of cells at edges, as in `kernels.edges`, None where there is no edge: softness, m/Pa, drop, m, power,
+    # and pressure at which they flow, Pa
     softness: Array | None
     drop: Array | None
+    power: Array | None
     flow: Array | None
 
 
@@ -152,12 +153,13 @@ def solve_batch(
     xp: Any,
     softness: Array | None = None,
     drop: Array | None = None,
+    power: Array | None = None,
     flow: Array | None = None,
 ) -> tuple[Array, Array]:
     """Solve a task for many overlaps (b, nx, ny), m, from pressures, Pa, which are overwritten.
 
-    Softness and drop, m/Pa and m, of cells at edges and the pressure at which they flow, Pa, are given for
-    all cells. Returns for each the iterations and the largest complementarity residual, m: where that is
+    Softness, m/Pa, drop, m, and power of cells at edges and the pressure at which they flow, Pa, are given
+    for all cells. Returns for each the iterations and the largest complementarity residual, m: where that is
     above its tolerance, the solution did not converge.
 
     Residuals are carried on from step to step. Where they claim convergence, true ones confirm it, or the
@@ -170,7 +172,7 @@ def solve_batch(
     while True:
         residual = convolve_padded(pressure, task.spectrum, xp) - overlap
         if softness is not None:
-            residual += sunk(softness, drop, flow, task.yielding, pressure, xp)
+            residual += sunk(softness, drop, power, flow, task.yielding, pressure, xp)
         before = worst
         worst = _complementarity(pressure, residual, task.hardness, xp)
         active = (worst > tolerance) & (worst <= STUCK * before) & (iterations < task.max_iterations)
@@ -180,7 +182,7 @@ def solve_batch(
         none = xp.zeros(count)
         members = _Members(
             xp.arange(count), tolerance, pressure, residual, nothing, nothing, none, none + 1.0, iterations,
-            active, softness, drop, flow,
+            active, softness, drop, power, flow,
         )  # fmt: skip
         while running := int(members.active.sum()):
             size = max(SMALLEST, 1 << (running - 1).bit_length())  # few: each needs a plan of transforms
@@ -192,9 +194,21 @@ def solve_batch(
         _record(members, pressure, iterations)
 
 
-def sunk(softness: Array, drop: Array, flow: Array, yielding: float, pressure: Array, xp: Any) -> Array:
+def sunk(
+    softness: Array, drop: Array, power: Array, flow: Array, yielding: float, pressure: Array, xp: Any
+) -> Array:
     """By how much cells at edges sink under a pressure, Pa; m."""
-    return xp.minimum(softness * pressure + yielding * xp.maximum(pressure - flow, 0.0), drop)
+    alone = softness * pressure + yielding * xp.maximum(pressure - flow, 0.0)
+    return alone * (1.0 + (alone / drop) ** power) ** (-1.0 / power)
+
+
+def compliance(
+    softness: Array, drop: Array, power: Array, flow: Array, yielding: float, pressure: Array, xp: Any
+) -> Array:
+    """Derivative of `sunk` by the pressure, m/Pa."""
+    alone = softness * pressure + yielding * xp.maximum(pressure - flow, 0.0)
+    giving = softness + yielding * (pressure > flow)
+    return giving * (1.0 + (alone / drop) ** power) ** (-1.0 / power - 1.0)
 
 
 def _record(members: _Members, pressure: Array, iterations: Array) -> None:
@@ -216,11 +230,10 @@ def _iterate(m: _Members, task: BatchTask, xp: Any) -> _Members:
         return step, _dot(m.residual, step), (kept != wanted).any(axis=(1, 2))
 
     free = ((m.pressure > 0.0) | (m.residual < 0.0)) & ((m.pressure < hardness) | (m.residual > 0.0))
-    at_edges = m.softness, m.drop, m.flow, task.yielding
+    at_edges = m.softness, m.drop, m.power, m.flow, task.yielding
     if m.softness is not None:
         before = sunk(*at_edges, m.pressure, xp)
-        giving = m.softness + task.yielding * (m.pressure > m.flow)
-        free = free / xp.sqrt(1.0 + task.taps[0] * giving * (before < m.drop))
+        free = free / xp.sqrt(1.0 + task.taps[0] * compliance(*at_edges, m.pressure, xp))
     z = apply_stencil(m.residual * free, task.taps, xp) * free
     rho = _dot(m.residual, z)
     known = m.rho > 0.0

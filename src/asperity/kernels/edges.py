@@ -1,11 +1,13 @@
 """Cells that a sharp edge of a surface crosses: they give way by more than a pressure all over them would.
 
 Beyond a deep edge nothing carries, and towards it the pressure rises as one over the root of the distance.
-A cell then sinks by its softness times its pressure more than a cell among others, at most by its drop, the
-mean depth below the sound surface: on that, all of it carries. Where surfaces flow at a hardness, the sound
-part of the cell does so at its share of that: from there on the cell yields some tens of times as much as
-others. What such cells sink grows with their pressure, so that the energy stays convex, and its least stays
-the solution.
+A cell then sinks by its softness times its pressure more than a cell among others, and by less as what lies
+deeper carries, too: to its drop at most, the mean depth below the sound surface, where all of it carries. It
+comes there the more sharply the larger a power is, by s = x/(1 + (x/drop)^power)^(1/power) with x what the
+sound part alone would sink by.
+Where surfaces flow at a hardness, the sound part of the cell does so at its share of that: from there on the
+cell yields some tens of times as much as others. What such cells sink grows with their pressure, so that the
+energy stays convex, and its least stays the solution.
 """
 
 from typing import NamedTuple
@@ -21,7 +23,8 @@ class SoftCells(NamedTuple):
     """Softness of the cells of a block, and those of a box that have any, one after the other."""
 
     softness: NDArray  # (rows, ny), m/Pa, zero far from edges; (0, 0) where there is no edge at all
-    drop: NDArray  # likewise, the most by which a cell sinks, m
+    drop: NDArray  # likewise, the most by which a cell sinks, m; above zero where there is a softness
+    power: NDArray  # likewise, with which it comes to that
     flow: NDArray  # likewise, pressure at which its sound part flows, Pa
     yielding: float  # by how much more a cell sinks beyond that, m/Pa
     row: NDArray  # (1,), row of these at which the window begins
@@ -29,6 +32,7 @@ class SoftCells(NamedTuple):
     cell: NDArray  # their places in the box
     soft: NDArray  # m/Pa
     most: NDArray  # m
+    powers: NDArray
     flows: NDArray  # Pa
     sunk: NDArray  # by how much a cell has sunk, m, which is on the residual
     step: NDArray  # and what the last step added, m
@@ -36,23 +40,29 @@ class SoftCells(NamedTuple):
 
 
 def soft_cells(
-    soft: tuple[NDArray, NDArray, NDArray, float] | None, count: int, dtype: DTypeLike
+    soft: tuple[NDArray, NDArray, NDArray, NDArray, float] | None, count: int, dtype: DTypeLike
 ) -> SoftCells:
     """Make room for the edges of a block in a window of so many cells."""
     room = 0 if soft is None else count
     none = np.zeros((0, 0))
-    softness, drop, flow, yielding = (none, none, none, 0.0) if soft is None else soft
+    softness, drop, power, flow, yielding = (none, none, none, none, 0.0) if soft is None else soft
     row, number = np.zeros((2, 1), dtype=np.int64)
     places: NDArray = np.zeros(room, dtype=np.int64)
-    fields: NDArray = np.zeros((6, room), dtype=dtype)
-    return SoftCells(softness, drop, flow, yielding, row, number, places, *fields)
+    fields: NDArray = np.zeros((7, room), dtype=dtype)
+    return SoftCells(softness, drop, power, flow, yielding, row, number, places, *fields)
+
+
+@compiled(**INNER)
+def by_itself(edges: SoftCells, k: int, pressure: float) -> float:
+    """By how much the sound part of a cell at an edge would sink under a pressure, Pa, alone; m."""
+    return edges.soft[k] * pressure + edges.yielding * max(pressure - edges.flows[k], 0.0)
 
 
 @compiled(**INNER)
 def sunk_by(edges: SoftCells, k: int, pressure: float) -> float:
     """By how much a cell at an edge sinks under a pressure, Pa; m."""
-    flowing = edges.yielding * max(pressure - edges.flows[k], 0.0)
-    return min(edges.soft[k] * pressure + flowing, edges.most[k])
+    alone, power = by_itself(edges, k, pressure), edges.powers[k]
+    return alone * (1.0 + (alone / edges.most[k]) ** power) ** (-1.0 / power)
 
 
 @compiled(**CALLED)
@@ -70,6 +80,7 @@ def find_edges(b: Box, edges: SoftCells, first: int, left: int) -> float:
                 if soft > 0.0:
                     edges.cell[found] = i * b.pitch + j
                     edges.soft[found], edges.most[found] = soft, edges.drop[row, left + j]
+                    edges.powers[found] = edges.power[row, left + j]
                     edges.flows[found] = min(edges.flow[row, left + j], FAR)
                     edges.sunk[found] = sunk_by(edges, found, b.pressure[i * b.pitch + j])
                     found += 1
@@ -110,10 +121,11 @@ def sink_by_share(b: Box, edges: SoftCells, share: float) -> None:
 def weigh_edges(b: Box, edges: SoftCells, stiffness: float) -> None:
     """Find how much less than others, of a stiffness in Pa/m, cells at edges that give way shall be moved."""
     for k in range(edges.number[0]):
-        softer = edges.soft[k] if edges.sunk[k] < edges.most[k] else 0.0
-        if softer > 0.0 and b.pressure[edges.cell[k]] > edges.flows[k]:
-            softer += edges.yielding
-        edges.weight[k] = 1.0 / np.sqrt(1.0 + softer * stiffness)
+        pressure, power = b.pressure[edges.cell[k]], edges.powers[k]
+        softer = edges.soft[k] + (edges.yielding if pressure > edges.flows[k] else 0.0)
+        deep = by_itself(edges, k, pressure) / edges.most[k]
+        left = (1.0 + deep**power) ** (-1.0 / power - 1.0)
+        edges.weight[k] = 1.0 / np.sqrt(1.0 + left * softer * stiffness)
 
 
 @compiled(**INNER)

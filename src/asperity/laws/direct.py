@@ -243,6 +243,7 @@ class DirectOnPath:
             for each, values in (
                 (room.softness, soft.softness),
                 (room.drop, soft.drop),
+                (room.power, soft.power),
                 (room.flow, soft.flow),
             ):
                 each[:] = values
