@@ -146,6 +146,16 @@ def test_where_surfaces_flow_the_sound_part_of_a_cell_carries_its_share():
         assert coarse.force == pytest.approx(fine.force, rel=0.016)
 
 
+def test_contacts_that_flow_over_steps_and_slopes_settle():
+    """With cells that stopped at once at their depth one in thirty did not."""
+    for shape, depth, edge in (("pit", 1, 0), ("spall", 2, 30), ("spall", 5, 60), ("pit", 10, 150)):
+        for size in SIZES:
+            fault = Fault(shape, length=size, depth=depth * UM, edge=edge * UM)
+            contact = over(fault, hardness=2e9)
+            assert contact.converged
+            assert contact.iterations < 50
+
+
 def test_the_tangent_is_the_central_difference():
     pit, step = Fault("pit", length=0.33 * MM, depth=1 * UM), 1e-5 * UM
     contact = over(pit, rtol=1e-12)
