@@ -188,9 +188,9 @@ def drawn_meanwhile(strip: Strip | None) -> Iterator[None]:
 
 def _draw(strip: Strip) -> None:
     rows, _ = strip.shape
-    for first in range(0, rows, PIECE):
+    for row in range(0, rows, PIECE):
         refuse_to_go_on()
-        strip.rows(first, min(first + PIECE, rows))
+        strip.rows(row, row + 1)  # all of the piece that holds it is made
 
 
 @dataclass(frozen=True, eq=False)
