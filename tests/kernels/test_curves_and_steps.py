@@ -13,7 +13,14 @@ from asperity import HalfSpace
 from asperity.kernels import stepping
 from asperity.kernels.curves import monotone_slopes, shape_preserving, splines_along
 from asperity.kernels.fourier import factors, roots, smooth_length, transform
-from asperity.kernels.influence import prepared
+from asperity.kernels.influence import (
+    Convolution,
+    convolve,
+    influence_table,
+    prepared,
+    quarter_turn,
+    spectrum,
+)
 from asperity.kernels.lanes import width
 from asperity.kernels.scanning import continue_pressure, correct_start, misfits, room
 from asperity.kernels.stepping import refine
@@ -100,6 +107,27 @@ def test_transform_is_the_discrete_fourier_transform_of_every_column(n, dtype):
     expected = np.fft.fft(z, axis=0)
     error = np.abs(result[:, 0] + 1j * result[:, 1] - expected).max()
     assert error < PRECISIONS[dtype] * np.abs(expected).max()
+
+
+@pytest.mark.parametrize("dtype", PRECISIONS)
+@pytest.mark.parametrize("summed", [False, True])
+@pytest.mark.parametrize("shape", [(1, 1), (5, 2), (7, 5), (16, 16), (19, 33), (40, 95)])
+def test_a_convolution_is_a_sum_over_cells_however_it_is_taken_across(shape, summed, dtype):
+    count, (nx, ny) = width(dtype), shape
+    mx, my = (smooth_length(n) for n in shape)
+    pitch = count * -(-ny // count)
+    table = influence_table(mx, my, 1.0, 1.5)
+    parts = roots(mx), roots(my), quarter_turn(mx), quarter_turn(my)
+    parts = [*parts, spectrum(table, mx, my, count, summed=summed)]
+    radices = np.array(factors(mx)), np.array([] if summed else factors(my), dtype=np.int64)
+    plan = Convolution(*radices, *(each.astype(dtype) for each in parts))
+    field, found = np.zeros((2, nx, pitch), dtype=dtype)
+    field[:, :ny] = np.random.default_rng(1).normal(size=shape)
+    work = np.full(8 * count * (mx + count) * (my + count), np.nan, dtype=dtype)
+    convolve(plan, field.ravel(), nx, ny, pitch, work, found.ravel())
+    i, j = (np.abs(np.subtract.outer(np.arange(n), np.arange(n))) for n in shape)
+    expected = np.einsum("ikjl,kl->ij", table[i[:, :, None, None], j], field[:, :ny].astype(np.float64))
+    assert_allclose(found[:, :ny], expected, atol=PRECISIONS[dtype] * np.abs(expected).max(), rtol=0.0)
 
 
 @pytest.mark.parametrize("shape", [(6, 6), (17, 33), (40, 25)])

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from asperity.kernels.fourier import factors, read_parts, roots, smooth_length, transform, write_parts
-from asperity.kernels.lanes import aligned, lanes, load, store, transpose, width
+from asperity.kernels.lanes import aligned, holds_vectors, lanes, load, store, transpose, width
 from asperity.kernels.options import CALLED, INNER, compiled
 
 AT_ONCE = 2**16
@@ -84,7 +84,7 @@ class Convolution(NamedTuple):
     """A kernel on boxes of up to (mx, my) cells, ready to be convolved with."""
 
     radices_x: NDArray  # of the length mx
-    radices_y: NDArray  # of the length my
+    radices_y: NDArray  # of the length my; none where it is not transformed, but summed
     roots_x: NDArray  # (2 mx,), from `fourier.roots`
     roots_y: NDArray  # (2 my,), from `fourier.roots`
     turn_x: NDArray  # (2 mx,), from `quarter_turn`
@@ -92,15 +92,16 @@ class Convolution(NamedTuple):
     spectrum: NDArray  # (whole_vectors(mx) my,), from `spectrum`
 
 
-def spectrum(table: NDArray, mx: int, my: int, lanes: int) -> NDArray:
+def spectrum(table: NDArray, mx: int, my: int, lanes: int, *, summed: bool) -> NDArray:
     """Spectrum (whole_vectors(mx) my,) of an even kernel, in the order in which it is multiplied with.
 
-    At the frequencies (k + ¼)/m, divided by 2 mx my. The kernel (≥ mx, ≥ my) is given at non-negative
-    separations; mx and my are from `fourier.smooth_length`.
+    At the frequencies (k + ¼)/m, divided by 2 mx my; along alone and divided by 2 mx where it is summed
+    across. The kernel (≥ mx, ≥ my) is given at non-negative separations; mx and my are from
+    `fourier.smooth_length`.
     """
-    quarter = quarter_spectrum(quarter_spectrum(table[:mx, :my], 1), 0) / (2.0 * mx * my)
+    along = quarter_spectrum(table[:mx, :my], 0) / (2.0 * mx)
     blocks = np.zeros((-(-mx // lanes) * lanes, my))
-    blocks[:mx] = quarter
+    blocks[:mx] = along if summed else quarter_spectrum(along, 1) / my
     return blocks.reshape(-1, lanes, my).transpose(0, 2, 1).ravel()
 
 
@@ -197,6 +198,76 @@ def _across(c: Convolution, block: int, rows: NDArray, ny: int, a: NDArray, b: N
                 write_parts(rows, o, re + first, im + second)
 
 
+@compiled(**INNER)
+def _read_half(halves: NDArray, k: int) -> Any:
+    """Sum, real and imaginary, of the values that lie as far on either side of the middle, and difference."""
+    part = lanes(halves)
+    return *read_parts(halves, 4 * k * part), *read_parts(halves, (4 * k + 2) * part)
+
+
+@compiled(**INNER)
+def _write_halves(rows: NDArray, half: int, halves: NDArray) -> None:
+    """Write what `_read_half` reads."""
+    part = lanes(rows)
+    for j in range(half):
+        re, im = read_parts(rows, 2 * j * part)
+        other_re, other_im = read_parts(rows, 2 * (2 * half - 1 - j) * part)
+        write_parts(halves, 4 * j * part, re + other_re, im + other_im)
+        write_parts(halves, (4 * j + 2) * part, re - other_re, im - other_im)
+
+
+@compiled(**INNER)
+def _add(total: Any, c: Convolution, first: int, near: int, far: int, half: Any) -> Any:
+    """Add what cells on either side of the middle displace, of which the one is near and the other far."""
+    part = lanes(c.spectrum)
+    by_near = load(c.spectrum, first + abs(near) * part)
+    by_far = load(c.spectrum, first + abs(far) * part)
+    even, odd = by_near + by_far, by_near - by_far
+    return (
+        total[0] + even * half[0],
+        total[1] + even * half[1],
+        total[2] + odd * half[2],
+        total[3] + odd * half[3],
+    )
+
+
+@compiled(**INNER)
+def _unite(rows: NDArray, j: int, half: int, total: Any) -> None:
+    """Write conjugate results on either side of the middle, unless j lies beyond it."""
+    part = lanes(rows)
+    re, im, odd_re, odd_im = total
+    if j < half:
+        write_parts(rows, 2 * j * part, re + odd_re, -1.0 * (im + odd_im))
+        write_parts(rows, 2 * (2 * half - 1 - j) * part, re - odd_re, odd_im - im)
+
+
+@compiled(**CALLED)
+def _sum_across(c: Convolution, block: int, rows: NDArray, ny: int, halves: NDArray) -> None:
+    """Convolve across as a sum of products; the conjugate of the result replaces the rows.
+
+    With an even kernel a field that is even about the middle stays so, and an odd one, too: each has half as
+    many cells. Four results at a time share what is read.
+    """
+    part = lanes(rows)
+    half = (ny + 1) // 2
+    last = 2 * half - 1
+    first = block * (len(c.turn_y) // 2) * part
+    _write_halves(rows, half, halves)
+    zero = 0.0 * load(halves, 0)
+    for j in range(0, half, 4):
+        w = x = y = z = zero, zero, zero, zero
+        for k in range(half):
+            each = _read_half(halves, k)
+            w = _add(w, c, first, j - k, last - j - k, each)
+            x = _add(x, c, first, j + 1 - k, last - j - 1 - k, each)
+            y = _add(y, c, first, j + 2 - k, last - j - 2 - k, each)
+            z = _add(z, c, first, j + 3 - k, last - j - 3 - k, each)
+        _unite(rows, j, half, w)
+        _unite(rows, j + 1, half, x)
+        _unite(rows, j + 2, half, y)
+        _unite(rows, j + 3, half, z)
+
+
 @compiled(**CALLED, nogil=True)
 def convolve(
     c: Convolution, field: NDArray, nx: int, ny: int, pitch: int, work: NDArray, out: NDArray
@@ -224,7 +295,11 @@ def convolve(
                 o = k * line + 2 * first * n + part
                 transpose(x, 2 * k * n * n + part, 2 * n, rows, o, 2 * n)
     for k in range(blocks):
-        _across(c, k, rows[k * line : (k + 1) * line], ny, a, b, s)
+        across = rows[k * line : (k + 1) * line]
+        if len(c.radices_y):
+            _across(c, k, across, ny, a, b, s)
+        else:
+            _sum_across(c, k, across, ny, a)
     for first in range(0, row, n):
         for k in range(blocks):
             for part in range(0, 2 * n, n):
@@ -238,6 +313,11 @@ UNIT = 8
 """Boxes are convolved in multiples of this length."""
 RADICES = 16
 """Room for the radices of a length: no length that fits into memory has as many."""
+SUMMED_WIDE, SUMMED = 96, 24
+"""Cells across up to which sums of products take less time than transforms.
+
+Sixteen vectors are summed at a time: that pays less where registers do not hold a whole one.
+"""
 
 
 class Influence(NamedTuple):
@@ -246,6 +326,7 @@ class Influence(NamedTuple):
     table: NDArray  # (≥ nx, ≥ ny), displacement per pressure at non-negative separations, m/Pa
     softest: float  # no pressure of unit norm displaces by more, m/Pa
     taps: NDArray  # (6,), preconditioner, from `projected_cg.inverse_stencil`, Pa/m
+    summed: int  # cells across up to which convolutions are summed there, not transformed
     lengths: NDArray  # (k,), length in which n cells are convolved, at ⌈n / UNIT⌉
     radices: NDArray  # (RADICES k,), radices of the length UNIT i from RADICES i on, then zeros
     starts: NDArray  # (k,), where the roots and turns of the length UNIT i begin
@@ -277,8 +358,9 @@ def influence(table: NDArray, taps: NDArray, dtype: DTypeLike = np.float64) -> I
     given = (taps, known_roots, turns, np.zeros(0))
     taps, known_roots, turns, spectra = (a.astype(dtype) for a in given)
     places = np.full((count, count), -1)
+    summed = SUMMED_WIDE if holds_vectors() else SUMMED
     return Influence(
-        table, softest, taps, lengths, radices.ravel(), starts, known_roots, turns, places, spectra
+        table, softest, taps, summed, lengths, radices.ravel(), starts, known_roots, turns, places, spectra
     )
 
 
@@ -290,7 +372,7 @@ def prepared(known: Influence, nx: int, ny: int) -> Influence:
     places = known.places.copy()
     places[mx // UNIT, my // UNIT] = len(known.spectra)
     dtype = known.spectra.dtype
-    added = spectrum(known.table, mx, my, width(dtype))
+    added = spectrum(known.table, mx, my, width(dtype), summed=my <= known.summed)
     spectra = aligned(len(known.spectra) + len(added), dtype)
     np.concatenate([known.spectra, added], out=spectra, casting="same_kind")
     return known._replace(places=places, spectra=spectra)
@@ -313,7 +395,7 @@ def convolution(known: Influence, nx: int, ny: int) -> Convolution:
     end_x, end_y = RADICES * i, RADICES * j
     while known.radices[end_x]:
         end_x += 1
-    while known.radices[end_y]:
+    while UNIT * j > known.summed and known.radices[end_y]:
         end_y += 1
     return Convolution(
         known.radices[RADICES * i : end_x],

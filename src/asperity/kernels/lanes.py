@@ -9,7 +9,7 @@ import operator
 from typing import Any
 
 import numpy as np
-from llvmlite import ir
+from llvmlite import binding, ir
 from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic, lower_builtin, models, register_model, type_callable
@@ -24,6 +24,14 @@ EIGHT = 8
 def width(dtype: DTypeLike) -> int:
     """Numbers in a vector, of type float64 or float32."""
     return VECTOR_BYTES // np.dtype(dtype).itemsize
+
+
+def holds_vectors() -> bool:
+    """Whether a register of the processor holds a whole vector."""
+    try:
+        return bool(binding.get_host_cpu_features().get("avx512f", False))
+    except RuntimeError:  # it cannot be told everywhere
+        return False
 
 
 def aligned(count: int, dtype: DTypeLike) -> NDArray:
