@@ -118,12 +118,6 @@ def rims(along: float, across: float, size: int, dtype: DTypeLike) -> Rims:
     )  # fmt: skip
 
 
-@compiled(**INNER)
-def cells_beside(rims: Rims | None) -> int:
-    """Cells beside the overlap that may be in contact: one that overlaps in part may not in the mean."""
-    return 0 if rims is None else 1
-
-
 @compiled(**INNER, **REASSOCIATE)
 def _mark_rims(b: Box, rims: Rims, level: float, hardness: float) -> bool:
     """Mark cells whose pressure is less than the step between their neighbours; keep the residual.

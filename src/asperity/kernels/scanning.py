@@ -14,7 +14,6 @@ from asperity.kernels.options import CALLED, INNER, LOOP, ONCE, REASSOCIATE, com
 from asperity.kernels.projected_cg import Task, force_lacked, solve, survey, true_residual
 from asperity.kernels.rims import (
     Rims,
-    cells_beside,
     lay_bare,
     move_rims,
     rims,
@@ -236,15 +235,67 @@ def solve_contact(known: Influence, b: Block, approach: float, pressure: NDArray
     Bodies that yield have the given approach without their compliance. The start is within the bounds, and
     zero on all of the overlap if nothing is known. `pressure` receives the pressure, unless a convolution is
     missing, and so does `rise` what an approach adds to it, if only the force has to be exact.
+
+    Cells that are covered in part carry beside that box as well, where those at its ends do.
     """
+    largest, first, end, left, right = overlap_box(b.gap, approach, b.room.lowest)
+    ends = first, end, left, right
+    beside = _cells_beside(b.room.rims, b.start, ends)
+    iterations: int = np.int64(0)  # type: ignore[assignment]  # a literal one would be compiled apart
+    while True:
+        found = _solve_within(known, b, approach, largest, _widened(ends, beside, b.gap), pressure, rise)
+        iterations += found.iterations
+        if beside or not found.prepared or not _cells_beside(b.room.rims, pressure, ends):
+            return Solution(
+                found.prepared, found.converged, iterations, found.residual, found.total, found.level,
+                found.nx, found.ny,
+            )  # fmt: skip
+        beside = 1
+        for i in range(b.start.shape[0]):
+            for j in range(b.start.shape[1]):
+                b.start[i, j], b.rise[i, j] = pressure[i, j], rise[i, j]
+
+
+@compiled(**INNER)
+def _cells_beside(rims: Rims | None, pressure: NDArray, ends: tuple[int, int, int, int]) -> int:
+    """Cells beside a box that may be in contact: one if those at its ends are, and cells covered in part.
+
+    They may overlap in part, but not in the mean; alone they carry nothing.
+    """
+    if rims is None:
+        return 0
+    first, end, left, right = ends
+    nx, ny = pressure.shape
+    total = 0.0
+    for j in range(left, right):
+        total += (pressure[first, j] if first > 0 else 0.0) + (pressure[end - 1, j] if end < nx else 0.0)
+    for i in range(first, end):
+        total += (pressure[i, left] if left > 0 else 0.0) + (pressure[i, right - 1] if right < ny else 0.0)
+    return 1 if total > 0.0 else 0
+
+
+@compiled(**INNER)
+def _widened(ends: tuple[int, int, int, int], cells: int, gap: NDArray) -> tuple[int, int, int, int]:
+    """Widen a box by so many cells on every side, as far as the window goes."""
+    first, end, left, right = ends
+    nx, ny = gap.shape
+    return max(first - cells, 0), min(end + cells, nx), max(left - cells, 0), min(right + cells, ny)
+
+
+@compiled(**ONCE)
+def _solve_within(
+    known: Influence,
+    b: Block,
+    approach: float,
+    largest: float,
+    ends: tuple[int, int, int, int],
+    pressure: NDArray,
+    rise: NDArray,
+) -> Solution:
+    """Solve a contact as `solve_contact` does, on a box whose largest overlap is given, m."""
     hardness = b.hardness
     load = b.load
-    largest, first, end, left, right = overlap_box(b.gap, approach, b.room.lowest)
-    beside = cells_beside(b.room.rims)
-    first = max(first - beside, 0)
-    end = min(end + beside, b.gap.shape[0])
-    left = max(left - beside, 0)
-    right = min(right + beside, b.gap.shape[1])
+    first, end, left, right = ends
     nx, ny = end - first, right - left
     if not is_prepared(known, nx, ny):
         return Solution(False, False, 0, 0.0, 0.0, 0.0, nx, ny)
