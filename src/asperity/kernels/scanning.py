@@ -37,7 +37,7 @@ LOOSE = 6.0
 """Residual that is enough where the force has settled, over that which is asked for else.
 
 Errors of forces are then no larger than those of pressures that meet the tolerance."""
-PAYS = 1.6
+PAYS = 1.25
 """Work of a convolution over that on a smaller box, from which on it pays to cut that box out of it."""
 
 
@@ -236,16 +236,17 @@ def solve_contact(known: Influence, b: Block, approach: float, pressure: NDArray
     zero on all of the overlap if nothing is known. `pressure` receives the pressure, unless a convolution is
     missing, and so does `rise` what an approach adds to it, if only the force has to be exact.
 
-    Cells that are covered in part carry beside that box as well, where those at its ends do.
+    Cells that are covered in part carry beside that box as well, where those at its ends do: one that
+    overlaps in part may not in the mean, but alone it carries nothing.
     """
     largest, first, end, left, right = overlap_box(b.gap, approach, b.room.lowest)
     ends = first, end, left, right
-    beside = _cells_beside(b.room.rims, b.start, ends)
+    beside = _cells_beside(known, b.room.rims, b.start, ends)
     iterations: int = np.int64(0)  # type: ignore[assignment]  # a literal one would be compiled apart
     while True:
         found = _solve_within(known, b, approach, largest, _widened(ends, beside, b.gap), pressure, rise)
         iterations += found.iterations
-        if beside or not found.prepared or not _cells_beside(b.room.rims, pressure, ends):
+        if beside or not found.prepared or not _cells_beside(known, b.room.rims, pressure, ends):
             return Solution(
                 found.prepared, found.converged, iterations, found.residual, found.total, found.level,
                 found.nx, found.ny,
@@ -257,20 +258,25 @@ def solve_contact(known: Influence, b: Block, approach: float, pressure: NDArray
 
 
 @compiled(**INNER)
-def _cells_beside(rims: Rims | None, pressure: NDArray, ends: tuple[int, int, int, int]) -> int:
-    """Cells beside a box that may be in contact: one if those at its ends are, and cells covered in part.
-
-    They may overlap in part, but not in the mean; alone they carry nothing.
-    """
+def _cells_beside(
+    known: Influence, rims: Rims | None, pressure: NDArray, ends: tuple[int, int, int, int]
+) -> int:
+    """Cells beside a box to solve on: one where cells at its ends carry, or where a convolution has room."""
     if rims is None:
         return 0
+    wide = _widened(ends, 1, pressure)
     first, end, left, right = ends
-    nx, ny = pressure.shape
+    if known.lengths[-(-(end - first) // UNIT)] == known.lengths[-(-(wide[1] - wide[0]) // UNIT)]:
+        return 1
     total = 0.0
     for j in range(left, right):
-        total += (pressure[first, j] if first > 0 else 0.0) + (pressure[end - 1, j] if end < nx else 0.0)
+        total += (pressure[first, j] if wide[0] < first else 0.0) + (
+            pressure[end - 1, j] if wide[1] > end else 0.0
+        )
     for i in range(first, end):
-        total += (pressure[i, left] if left > 0 else 0.0) + (pressure[i, right - 1] if right < ny else 0.0)
+        total += (pressure[i, left] if wide[2] < left else 0.0) + (
+            pressure[i, right - 1] if wide[3] > right else 0.0
+        )
     return 1 if total > 0.0 else 0
 
 
@@ -420,9 +426,9 @@ def _recurs(b: Box, rtol: float) -> bool:
 
 @compiled(**INNER)
 def _work(known: Influence, nx: int, ny: int) -> float:
-    """Work of a convolution on a box: the numbers that it transforms."""
+    """Work of a convolution on a box: the numbers that it transforms along, and those across."""
     mx, my = known.lengths[-(-nx // UNIT)], known.lengths[-(-ny // UNIT)]
-    return float(whole_vectors(mx, lanes(known.spectra)) * my)
+    return float(whole_vectors(mx, lanes(known.spectra)) * (ny if my <= known.summed else my))
 
 
 @compiled(**INNER)
@@ -443,13 +449,10 @@ def _leave(b: Box, field: NDArray, target: NDArray, first: int, left: int) -> fl
 
 
 @compiled(**INNER)
-def _grown(known: Influence, first: int, end: int, n: int) -> tuple[int, int]:
-    """Begin and length of a side with a margin, and with what transforms at the same cost, within n cells."""
-    needed = end - first + 2 * MARGIN
-    if needed >= n:
-        return 0, n
-    length = min(known.lengths[-(-needed // UNIT)], n)
-    return min(max(0, first - (length - (end - first)) // 2), n - length), length
+def _with_margin(first: int, end: int, n: int) -> tuple[int, int]:
+    """Begin and length of a side with a margin, within n cells."""
+    begin = max(first - MARGIN, 0)
+    return begin, min(end + MARGIN, n) - begin
 
 
 @compiled(**INNER)
@@ -457,8 +460,8 @@ def _part(
     known: Influence, nx: int, ny: int, top: int, bottom: int, near: int, far: int
 ) -> tuple[int, int, int, int]:
     """First row, rows, first column and columns of the part to solve on; all of them if less does not pay."""
-    row, rows = _grown(known, top, bottom, nx)
-    column, columns = _grown(known, near, far, ny)
+    row, rows = _with_margin(top, bottom, nx)
+    column, columns = _with_margin(near, far, ny)
     if _work(known, nx, ny) < PAYS * _work(known, rows, columns):
         return 0, nx, 0, ny
     return row, rows, column, columns
