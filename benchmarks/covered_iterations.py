@@ -148,8 +148,8 @@ def main() -> None:
     """Compare."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("commit", help="what the working tree is compared with")
-    parser.add_argument("--cells", type=int, nargs="+", default=[16, 24, 32, 48, 64, 96])
-    parser.add_argument("--rounds", type=int, default=12)
+    parser.add_argument("--cells", type=int, nargs="+", default=[16, 21, 28, 36, 48, 64, 96])
+    parser.add_argument("--rounds", type=int, default=10)
     chosen = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         archive = subprocess.run(

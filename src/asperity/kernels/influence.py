@@ -1,6 +1,7 @@
 """Influence of pressure on displacement: Love's coefficients of a cell, and their convolution on boxes.
 
-Boxes have a free boundary without padding: by a quarter turn, what wraps around becomes imaginary.
+Boxes have a free boundary without padding: by a quarter turn, what wraps around becomes imaginary. Across,
+small boxes are not transformed, but summed.
 """
 
 from functools import lru_cache

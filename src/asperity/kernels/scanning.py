@@ -38,7 +38,11 @@ LOOSE = 6.0
 
 Errors of forces are then no larger than those of pressures that meet the tolerance."""
 PAYS = 1.25
-"""Work of a convolution over that on a smaller box, from which on it pays to cut that box out of it."""
+"""Work on a box over that on a smaller one, from which on it pays to cut that out of it."""
+
+
+Ends = tuple[int, int, int, int]
+"""First and end row, first and end column of a box in the window."""
 
 
 class Room(NamedTuple):
@@ -258,9 +262,7 @@ def solve_contact(known: Influence, b: Block, approach: float, pressure: NDArray
 
 
 @compiled(**INNER)
-def _cells_beside(
-    known: Influence, rims: Rims | None, pressure: NDArray, ends: tuple[int, int, int, int]
-) -> int:
+def _cells_beside(known: Influence, rims: Rims | None, pressure: NDArray, ends: Ends) -> int:
     """Cells beside a box to solve on: one where cells at its ends carry, or where a convolution has room."""
     if rims is None:
         return 0
@@ -270,18 +272,14 @@ def _cells_beside(
         return 1
     total = 0.0
     for j in range(left, right):
-        total += (pressure[first, j] if wide[0] < first else 0.0) + (
-            pressure[end - 1, j] if wide[1] > end else 0.0
-        )
+        total += pressure[first, j] * (wide[0] < first) + pressure[end - 1, j] * (wide[1] > end)
     for i in range(first, end):
-        total += (pressure[i, left] if wide[2] < left else 0.0) + (
-            pressure[i, right - 1] if wide[3] > right else 0.0
-        )
+        total += pressure[i, left] * (wide[2] < left) + pressure[i, right - 1] * (wide[3] > right)
     return 1 if total > 0.0 else 0
 
 
 @compiled(**INNER)
-def _widened(ends: tuple[int, int, int, int], cells: int, gap: NDArray) -> tuple[int, int, int, int]:
+def _widened(ends: Ends, cells: int, gap: NDArray) -> Ends:
     """Widen a box by so many cells on every side, as far as the window goes."""
     first, end, left, right = ends
     nx, ny = gap.shape
@@ -290,13 +288,7 @@ def _widened(ends: tuple[int, int, int, int], cells: int, gap: NDArray) -> tuple
 
 @compiled(**ONCE)
 def _solve_within(
-    known: Influence,
-    b: Block,
-    approach: float,
-    largest: float,
-    ends: tuple[int, int, int, int],
-    pressure: NDArray,
-    rise: NDArray,
+    known: Influence, b: Block, approach: float, largest: float, ends: Ends, pressure: NDArray, rise: NDArray
 ) -> Solution:
     """Solve a contact as `solve_contact` does, on a box whose largest overlap is given, m."""
     hardness = b.hardness
