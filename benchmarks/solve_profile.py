@@ -77,9 +77,9 @@ def bare(c: Convolution, b: Box, times: int) -> None:
 @njit(_nrt=False)  # as what is timed is compiled
 def repeated(
     start: Any, residual: Any, times: int, c: Any, taps: Any, b: Any, task: Any, edges: Any
-) -> tuple[int, bool]:
+) -> tuple[int, bool, bool]:
     """Solve again and again from the same start, on whole cells."""
-    result = (0, True)
+    result = (0, True, False)
     for _ in range(times):
         for q in range(len(start)):
             b.pressure[q], b.residual[q] = start[q], residual[q]
@@ -102,14 +102,14 @@ class Timed:
 
     def __call__(
         self, c: Any, taps: Any, b: Any, task: Any, done: int, rims: None, edges: Any
-    ) -> tuple[int, bool]:
+    ) -> tuple[int, bool, bool]:
         """Solve, timed."""
         arguments = (b.pressure.copy(), b.residual.copy(), c, taps, b, task, edges)
         self.seconds += least(lambda: repeated(*arguments[:2], 5, *arguments[2:]), 2) / 5
-        iterations, moving = repeated(*arguments[:2], 1, *arguments[2:])
+        iterations, moving, settled = repeated(*arguments[:2], 1, *arguments[2:])
         self.convolving += iterations * least(lambda: bare(c, b, 40), 2) / 40
         self.iterations, self.solutions = self.iterations + iterations, self.solutions + 1
-        return done + iterations, moving
+        return done + iterations, moving, settled
 
 
 def profile(cells: int) -> None:
@@ -121,6 +121,7 @@ def profile(cells: int) -> None:
         patch.object(scanning, "convolution", interpreted(scanning.convolution)),
         patch.object(scanning, "empty_box", interpreted(scanning.empty_box)),
         patch.object(scanning, "solve_contact", scanning.solve_contact.py_func),
+        patch.object(scanning, "_solve_within", scanning._solve_within.py_func),
         patch.object(scanning, "solve_positions", scanning.solve_positions.py_func),
     ):
         scan_forces(scan_job(p, p["approaches"][:1]), workers=1)
