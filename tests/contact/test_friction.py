@@ -9,7 +9,7 @@ from asperity import Friction, FrictionalHalfSpace, HalfSpace, Hertz, Material
 from asperity.contact import tangential
 from asperity.contact.creep import kalker_coefficients
 from asperity.errors import OutOfRangeWarning
-from asperity.kernels.traction import pressure_displacement, traction_displacement
+from asperity.kernels.traction_influence import pressure_displacement, traction_displacement
 from asperity.surfaces.synthesis import self_affine
 from refusals import refusals
 

@@ -9,7 +9,7 @@ from test_friction import HARD, SOFT, body, displaced, ellipse, places, rigid
 
 from asperity import FrictionalHalfSpace, HalfSpace
 from asperity.contact.wear import rubbing
-from asperity.kernels.traction import pressure_displacement
+from asperity.kernels.traction_influence import pressure_displacement
 
 MOTIONS = [((1e-3, 0.0), 0.0), ((1e-5, 0.0), 0.0), ((4e-4, -3e-4), 0.3), ((0.0, 0.0), 0.6)]
 

@@ -8,6 +8,7 @@ from asperity.arguments import Array, ArrayLike, Flags, finite_array, real
 from asperity.contact.elastic_grid import ElasticGrid
 from asperity.contact.solved import Contact
 from asperity.errors import Outcome
+from asperity.kernels.rims import cells_covered
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,8 +169,12 @@ class SlidingContact:
 
     @property
     def stick_area(self) -> float:
-        """Area that sticks, m²."""
-        return float(self.sticks.sum()) * self.normal.half_space.cell_area
+        """Area that sticks, m²: on covered cells that inside the rims of what is missing of the bound."""
+        space = self.normal.half_space
+        if space.sides is None:
+            return float(self.sticks.sum()) * space.cell_area
+        missing = np.where(self.sticks, np.maximum(self.bound - np.hypot(*self.traction), 0.0), 0.0)
+        return cells_covered(missing, *space.sides) * space.cell_area
 
     @property
     def slip_area(self) -> float:

@@ -15,10 +15,18 @@ from asperity.contact.halfspace import HalfSpace
 from asperity.contact.periodic import refuse_period
 from asperity.contact.pressed import at_load
 from asperity.contact.solved import Contact
+from asperity.contact.traction_rims import free_slip, left_ahead, rows_ahead, slip_ahead
 from asperity.errors import ComputationError, Outcome, OutOfRangeWarning, UnconvergedWarning, percent
 from asperity.kernels import traction as kernel
 from asperity.kernels.fourier import smooth_length
 from asperity.kernels.projected_cg import inverse_stencil
+from asperity.kernels.traction_influence import (
+    means_of_pressure,
+    means_of_traction,
+    pressure_displacement,
+    traction_displacement,
+)
+from asperity.kernels.traction_rims import TractionRims, traction_rims
 from asperity.reference.materials import Material
 from asperity.written_numbers import rounded
 
@@ -39,6 +47,8 @@ NEWTON_LIKE = 10
 """Steps towards a force before every other one halves the interval that holds its creepage."""
 SPIN_AHEAD = 1.0 / 6.0
 """Share of the rolled distance by which spin is counted ahead of a cell, as the program CONTACT does."""
+SPIN_ON_MEANS = 0.5
+"""On covered cells, the mean of the way: what slips on counts at its end, see `kernels.traction_rims`."""
 PIVOTING = 0.99
 """Share of slip from which on spin may say more than creepage."""
 Forces = tuple[float | None, float | None]
@@ -139,7 +149,7 @@ class FrictionalHalfSpace:
         dx, dy = half_space.spacing
         x = dx * np.arange(32.0)[:, None]
         y = dy * np.arange(32.0)[None, :]
-        along, across, _ = kernel.traction_displacement(x, y, dx, dy, self.poisson_ratio)
+        along, across, _ = traction_displacement(x, y, dx, dy, self.poisson_ratio)
         own = along[0, 0]
         self._taps = inverse_stencil(0.5 * (along + across) / own)
         self._influences: dict[tuple[float, bool], tuple[Array, Complex, float]] = {}
@@ -238,6 +248,8 @@ class FrictionalHalfSpace:
         allowed = "a distance above 0, m"
         distance = self.half_space.spacing[0] if distance is None else distance
         distance = real("rolled distance", distance, allowed, above=0.0)
+        if self._covers:
+            rows_ahead(distance, self.half_space.spacing[0], before is None)
         speed = real("rolling speed", speed, "at least 0, m/s", at_least=0.0)
         curvature = real("curvature of the creepage", creepage_curvature, "a finite number, 1/m^2")
         manner = _Manner(distance, before is None, before, start or before, speed, rtol, curvature)
@@ -269,13 +281,16 @@ class FrictionalHalfSpace:
         if (ahead, steady) not in self._influences:
             nx, ny = self.half_space.shape
             dx, dy = self.half_space.spacing
-            x = dx * np.arange(1.0 - nx, nx)[:, None] + ahead
-            y = dy * np.arange(1.0 - ny, ny)[None, :]
-            found = kernel.traction_displacement(x, y, dx, dy, self.poisson_ratio)
-            traction = np.stack(found) / (math.pi * self.shear_modulus)
+            beside = 1 if self._covers else 0  # means take cells beside them
+            x = dx * np.arange(1.0 - nx - beside, nx + beside)[:, None] + ahead
+            y = dy * np.arange(1.0 - ny - beside, ny + beside)[None, :]
+            by_traction = means_of_traction if self._covers else traction_displacement
+            by_pressure = means_of_pressure if self._covers else pressure_displacement
+            found = by_traction(x, y, dx, dy, self.poisson_ratio)
+            traction = np.array(found) / (math.pi * self.shear_modulus)
             spread = np.zeros((1, 1), complex)
             if self._couples:
-                spread = self.unlikeness / math.pi * kernel.pressure_displacement(x, y, dx, dy)
+                spread = self.unlikeness / math.pi * by_pressure(x, y, dx, dy)
             if steady:
                 here, spread_here, _ = self._influence(0.0, False)
                 traction = here - traction
@@ -283,6 +298,17 @@ class FrictionalHalfSpace:
             own = float(traction[:2, nx - 1, ny - 1].mean())
             self._influences[ahead, steady] = traction, spread, own
         return self._influences[ahead, steady]
+
+    @property
+    def _covers(self) -> bool:
+        """Whether cells are covered in part."""
+        return self.half_space.cells == "covered"
+
+    @property
+    def _sides(self) -> tuple[float, float]:
+        """Sides of a cell over the shear modulus, m/Pa."""
+        dx, dy = self.half_space.spacing
+        return dx / self.shear_modulus, dy / self.shear_modulus
 
     @property
     def _couples(self) -> bool:
@@ -331,7 +357,16 @@ class FrictionalHalfSpace:
             words = f"friction at {found.creepage} did not converge: {why}"
             warnings.warn(words, UnconvergedWarning, stacklevel=3)
         self._doubt(found, manner)
+        if self._covers and manner.ahead:
+            found = replace(found, elastic_energy=self._stored(found))
         return with_work(found, manner.before, manner.ahead, self.displacement, self._couples)
+
+    def _stored(self, found: SlidingContact) -> float:
+        """Elastic energy of tractions on covered cells, J."""
+        traction = found.traction[0] + 1j * found.traction[1]
+        moved = self.displacement(traction, np.zeros(self.half_space.shape))
+        moved += left_ahead(found, 0, self._sides, self.poisson_ratio)[0]
+        return 0.5 * float((traction.conj() * moved).real.sum()) * self.half_space.cell_area
 
     def _doubt(self, found: SlidingContact, manner: _Manner) -> None:
         """Warn of what is outside the range of the theory."""
@@ -422,14 +457,19 @@ class FrictionalHalfSpace:
         velocity = np.zeros(space.shape)
         slipped = np.zeros(space.shape, dtype=bool)
         past = np.zeros(space.shape, complex)
+        behind = np.zeros(space.shape)
         counts = np.zeros(2, dtype=int)
         if before is not None:
             traction = before.traction[0] + 1j * before.traction[1]
             past = self.displacement(traction, before.normal.pressure, manner.ahead)
+            if self._covers:
+                rows = round(manner.ahead / space.spacing[0])
+                left, behind = left_ahead(before, rows, self._sides, self.poisson_ratio)
+                past += left + behind * traction  # instead of which the traction counts that is asked for
         loaded = normal
         bound = self.friction.coefficient(velocity, slipped) * normal.pressure
         for _ in range(MAX_ROUNDS):
-            found = self._solve(loaded, bound, past, motion, manner)
+            found = self._solve(loaded, bound, past, behind, motion, manner)
             counts += found.iterations, found.convolutions
             if not (self.friction.falls or self._couples):
                 break
@@ -450,8 +490,33 @@ class FrictionalHalfSpace:
             found = replace(found, outcome=Outcome.ITERATION_LIMIT)
         return replace(found, iterations=int(counts[0]), convolutions=int(counts[1]))
 
+    def _rims(
+        self, normal: Contact, box: kernel.TractionBox, inside: tuple[slice, slice], manner: _Manner
+    ) -> TractionRims:
+        """Rims of a contact on its box."""
+        beyond = np.zeros(len(box.bound))
+        enters = np.zeros(len(box.bound), bool)
+        _, steady = manner.kernel
+        if manner.ahead:
+            last = manner.before.normal if manner.before else normal
+            rows = round(manner.ahead / self.half_space.spacing[0])
+            entering, softness = free_slip(normal, last, rows, self.poisson_ratio)
+            _cells(enters, box)[:] = entering[inside] & (_cells(box.bound, box) > 0.0)
+            _cells(beyond, box)[:] = softness[inside]
+        ahead = box.pitch if steady else 0
+        rims = traction_rims(self._sides, self.poisson_ratio, box.pitch, ahead, enters, beyond)
+        if manner.before and manner.ahead:
+            _cells(rims.earlier, box)[:] = manner.ahead * slip_ahead(manner.before, rows)[inside]
+        return rims
+
     def _solve(
-        self, normal: Contact, bound: Array, past: Complex, motion: tuple[float, ...], manner: _Manner
+        self,
+        normal: Contact,
+        bound: Array,
+        past: Complex,
+        behind: Array,
+        motion: tuple[float, ...],
+        manner: _Manner,
     ) -> SlidingContact:
         """Solve at a bound, on the box of the contact."""
         x, y = cell_places(self.half_space)
@@ -460,7 +525,8 @@ class FrictionalHalfSpace:
         _, spread, own = self._influence(ahead, steady)
         rigid = manner.step * complex(xi, eta) - past
         if spin:
-            rigid += manner.step * spin * (1j * (x + SPIN_AHEAD * manner.ahead) - y)
+            share = SPIN_ON_MEANS if self._covers else SPIN_AHEAD
+            rigid += manner.step * spin * (1j * (x + share * manner.ahead) - y)
         if manner.curvature:
             rigid -= manner.step * manner.curvature * y**2
         if self._couples:
@@ -479,8 +545,12 @@ class FrictionalHalfSpace:
         if manner.start is not None:
             start = manner.start.traction[:, *inside]
             _cells(box.traction, box)[:] = start[0] + 1j * start[1]
+        rims = None
+        if self._covers:
+            rims = self._rims(normal, box, inside, manner)
+            _cells(rims.behind, box)[:] = behind[inside]
         task = kernel.TractionTask(own, carried, not steady, manner.rtol, MAX_ITERATIONS)
-        iterations, convolutions, worst = kernel.solve_traction(box, linear, task)
+        iterations, convolutions, worst = kernel.solve_traction(box, linear, rims, task)
         outcome = Outcome.CONVERGED if worst <= manner.rtol else Outcome.ITERATION_LIMIT
         fields = np.zeros((5, *contact.shape))
         p = _cells(box.traction, box)

@@ -11,47 +11,19 @@ from numpy.typing import DTypeLike, NDArray
 
 from asperity.kernels.box import REACH
 from asperity.kernels.fourier import factors, read_parts, roots, smooth_length, transform, write_parts
-from asperity.kernels.influence import _clear, _edge_log, whole_vectors
+from asperity.kernels.influence import _clear, whole_vectors
 from asperity.kernels.lanes import aligned, lanes, transpose, width
 from asperity.kernels.options import CALLED, INNER, LOOP, ONCE, REASSOCIATE, compiled
-
-
-def _weighted_log(x: NDArray, y: NDArray, half: float) -> NDArray:
-    """x ln[(y₊ + √(y₊² + x²)) / (y₋ + √(y₋² + x²))], zero at x = 0."""
-    nothing = x == 0.0
-    return np.where(nothing, 0.0, x * _edge_log(np.where(nothing, 1.0, x), np.abs(y), half))
-
-
-def traction_displacement(
-    x: NDArray, y: NDArray, dx: float, dy: float, poisson: float
-) -> tuple[NDArray, NDArray, NDArray]:
-    """Displacements at (x, y), times π G, under unit traction on the cell dx × dy at the origin.
-
-    Of both bodies against each other, along x by a traction along x, along y by one along y, and along the
-    one by the other. V. Cerruti's solution as in K. L. Johnson, Contact Mechanics (1985), 3.6, integrated
-    over the cell.
-    """
-    hx, hy = 0.5 * dx, 0.5 * dy
-    across = _weighted_log(x + hx, y, hy) - _weighted_log(x - hx, y, hy)
-    along = _weighted_log(y + hy, x, hx) - _weighted_log(y - hy, x, hx)
-    far = np.hypot(x + hx, y + hy) - np.hypot(x + hx, y - hy)
-    near = np.hypot(x - hx, y + hy) - np.hypot(x - hx, y - hy)
-    return (1.0 - poisson) * across + along, (1.0 - poisson) * along + across, -poisson * (far - near)
-
-
-def pressure_displacement(x: NDArray, y: NDArray, dx: float, dy: float) -> NDArray:
-    """Displacement x + iy of two unlike bodies, times −π G/K, at (x, y) under unit pressure on a cell.
-
-    ∫∫ (x, y)/ρ², in which K/G = ¼ ((1 − 2ν₁)/G₁ − (1 − 2ν₂)/G₂).
-    """
-    total: NDArray = np.zeros(np.broadcast_shapes(x.shape, y.shape), dtype=complex)
-    for sign_x in (1.0, -1.0):
-        for sign_y in (1.0, -1.0):
-            u, v = x + sign_x * 0.5 * dx, y + sign_y * 0.5 * dy
-            log = 0.5 * np.log(np.maximum(u * u + v * v, np.finfo(float).tiny))
-            angle_x, angle_y = (np.arctan(a / np.where(b == 0.0, np.inf, b)) for a, b in ((v, u), (u, v)))
-            total += sign_x * sign_y * (v * log + u * angle_x + 1j * (u * log + v * angle_y))
-    return total
+from asperity.kernels.traction_rims import (
+    TractionRims,
+    add_giving,
+    add_left,
+    carried_on,
+    giving_aside,
+    set_bound,
+    set_giving,
+    weigh_giving,
+)
 
 
 class TractionConvolution(NamedTuple):
@@ -182,6 +154,8 @@ EDGE = 1.0 - 1e-12
 """Share of the bound from which on a traction counts as on the edge."""
 RETREAT, LEAST, ROUNDING = 4.0, 1e-2, 1e-12
 """Factor of the damping where a step would raise the energy, by more than this share, and the least then."""
+PATIENCE, GROWTH, MOST = 12, 1.5, 3.0
+"""Iterations that should halve what is left; growth of the damping with each one more, and its end."""
 
 
 class LinearProblem(NamedTuple):
@@ -301,8 +275,32 @@ def _free(p: LinearProblem, q: int, value: complex) -> complex:
     return p.kept[q] * value + p.mirrored[q] * value.conjugate()
 
 
+@compiled(**INNER)
+def _on_edge(b: TractionBox, q: int) -> bool:
+    return b.bound[q] > 0.0 and _square(b.traction[q]) > (EDGE * b.bound[q]) ** 2
+
+
+@compiled(**INNER)
+def _slips_on(b: TractionBox, rims: TractionRims, q: int) -> bool:
+    """Whether the material of a cell slipped before."""
+    if rims.ahead == 0:
+        return rims.earlier[q] != 0.0
+    return q + rims.ahead < len(b.slip) and _on_edge(b, q + rims.ahead)
+
+
+@compiled(**INNER)
+def _slip_at_end(b: TractionBox, rims: TractionRims | None, q: int) -> complex:
+    """Slip of a cell that slips at the end of a step: of what goes on, the mean and half of its growth."""
+    slip = b.slip[q]
+    if rims is None or not _slips_on(b, rims, q):
+        return slip
+    earlier = b.slip[q + rims.ahead] if rims.ahead > 0 else rims.earlier[q]
+    at_end = slip + 0.5 * (slip - earlier)
+    return at_end if (at_end * b.traction[q].conjugate()).real < 0.0 else slip
+
+
 @compiled(**CALLED, **REASSOCIATE)
-def _judge(b: TractionBox, linear: LinearProblem) -> tuple[float, float]:
+def _judge(b: TractionBox, linear: LinearProblem, rims: TractionRims | None) -> tuple[float, float]:
     """Tell cells that stick from those that slip; return the largest slip against the law and the norm, m.
 
     A cell slips on the edge of its disc if the slip would take it out. All else should be without slip.
@@ -319,10 +317,10 @@ def _judge(b: TractionBox, linear: LinearProblem) -> tuple[float, float]:
             square = _square(p)
             linear.kept[q] = 1.0
             n = p * (1.0 / np.sqrt(square)) if square > (EDGE * g) ** 2 else n
-            along = (s * n.conjugate()).real
-            if along < 0.0:
+            if (s * n.conjugate()).real < 0.0:
                 linear.kept[q] = 0.5
-                s -= along * n
+                s = _slip_at_end(b, rims, q)
+                s -= (s * n.conjugate()).real * n
             else:
                 n = 0.0j
             missed = _square(s)
@@ -334,21 +332,30 @@ def _judge(b: TractionBox, linear: LinearProblem) -> tuple[float, float]:
 
 
 @compiled(**CALLED, **REASSOCIATE)
-def _linearise(b: TractionBox, linear: LinearProblem, damping: float, norm: float, diagonal: float) -> None:
+def _linearise(
+    b: TractionBox,
+    linear: LinearProblem,
+    rims: TractionRims | None,
+    damping: float,
+    norm: float,
+    diagonal: float,
+) -> None:
     """Set residual, slope and weight at the traction."""
-    sticking = 1.0 / np.sqrt(1.0 + damping)
     unit = 1.0 / norm
+    set_giving(rims, b.bound, b.traction, b.slip, b.normal, diagonal)
     for q in range(len(b.bound)):
         n = b.normal[q]
         left = 0.0j
-        against = -(b.slip[q] * n.conjugate()).real
-        linear.slope[q], linear.weight[q] = damping, sticking
+        slip = b.slip[q] if n == 0.0 else _slip_at_end(b, rims, q)
+        against = -(slip * n.conjugate()).real
+        slope = giving_aside(rims, q, diagonal)
         if against > 0.0:
-            slope = damping + against / (b.bound[q] * diagonal)
-            linear.slope[q] = slope
-            linear.weight[q] = 1.0 / np.sqrt(1.0 + slope)
+            slope += against / (b.bound[q] * diagonal)
+        slope = damping + max(slope, 0.0)
+        linear.slope[q] = slope
+        linear.weight[q] = 1.0 / np.sqrt(1.0 + slope)
         if b.bound[q] > 0.0:
-            left = -unit * (b.slip[q] + against * n)
+            left = -unit * (slip + against * n)
         linear.residual[q] = left
         linear.change[q] = 0.0
 
@@ -375,32 +382,55 @@ def _stencil(masked: NDArray, taps: NDArray, pitch: int, target: NDArray) -> Non
 
 
 @compiled(**INNER, **REASSOCIATE)
-def _carry(linear: LinearProblem, row: int, share: float, target: NDArray) -> None:
+def _weighted(linear: LinearProblem, rims: TractionRims | None, q: int, value: complex) -> complex:
+    return weigh_giving(rims, q, linear.slope[q], linear.weight[q], value)
+
+
+@compiled(**INNER, **REASSOCIATE)
+def _carry(
+    linear: LinearProblem, rims: TractionRims | None, diagonal: float, row: int, share: float, target: NDArray
+) -> None:
     """Carry the residual on from the leading edge, as in the simplified theory."""
     for q in range(len(target) - 1, -1, -1):
         p = q + row
         target[q] = linear.residual[q]
         if p < len(target):
-            target[q] += share * linear.weight[p] * _free(linear, p, target[p])
+            ahead = _free(linear, p, target[p])
+            sticks = linear.kept[p] == 1.0
+            target[q] += carried_on(rims, p, share, linear.weight[p], sticks, diagonal) * ahead
 
 
 @compiled(**CALLED, **REASSOCIATE)
-def _precondition_traction(b: TractionBox, linear: LinearProblem, carried: float, target: NDArray) -> None:
+def _precondition_traction(
+    b: TractionBox, linear: LinearProblem, rims: TractionRims | None, task: TractionTask, target: NDArray
+) -> None:
     """Apply the stencil to the residual, carried on in steady rolling."""
     masked = linear.carried[REACH * b.pitch :]
     source = linear.residual
-    if carried > 0.0:
+    if task.carried > 0.0:
         source = linear.response
-        _carry(linear, b.pitch, np.float32(carried), source)
+        _carry(linear, rims, task.diagonal, b.pitch, np.float32(task.carried), source)
     for q in range(len(source)):
-        masked[q] = linear.weight[q] * _free(linear, q, source[q])
+        masked[q] = _weighted(linear, rims, q, _free(linear, q, source[q]))
     _stencil(_parts(linear.carried), linear.taps, b.pitch, _parts(target))
     for q in range(len(target)):
-        target[q] = linear.weight[q] * _free(linear, q, target[q])
+        target[q] = _free(linear, q, _weighted(linear, rims, q, target[q]))
+
+
+@compiled(**INNER)
+def _response_at_end(b: TractionBox, linear: LinearProblem, rims: TractionRims | None, q: int) -> complex:
+    """Response to a change of the traction, of cells that slip on at the end of a step."""
+    slip = linear.response[q]
+    if rims is None or b.normal[q] == 0.0 or not _slips_on(b, rims, q):
+        return slip
+    earlier = linear.response[q + rims.ahead] if rims.ahead > 0 else slip * np.float32(0.0)
+    return slip + np.float32(0.5) * (slip - earlier)
 
 
 @compiled(**CALLED, **REASSOCIATE)
-def _solve_linear(b: TractionBox, linear: LinearProblem, task: TractionTask) -> int:
+def _solve_linear(
+    b: TractionBox, linear: LinearProblem, rims: TractionRims | None, task: TractionTask
+) -> int:
     """Find the change of the traction; return the iterations.
 
     Conjugate gradients, or, without an energy, conjugate residuals, truncated.
@@ -410,10 +440,12 @@ def _solve_linear(b: TractionBox, linear: LinearProblem, task: TractionTask) -> 
     against = linear.steps if task.symmetric else linear.responses
     for k in range(INNER_ITERATIONS):
         step, response = linear.steps[k % held], linear.responses[k % held]
-        _precondition_traction(b, linear, task.carried, step)
+        _precondition_traction(b, linear, rims, task, step)
         convolve_traction(linear.convolution, step, b.nx, b.ny, b.pitch, linear.work, linear.response)
+        add_giving(rims, step, linear.response)
         for q in range(len(step)):
-            response[q] = _free(linear, q, linear.response[q]) + linear.slope[q] * step[q]
+            slip = _response_at_end(b, linear, rims, q)
+            response[q] = _free(linear, q, slip) + linear.slope[q] * step[q]
         for other in range(max(0, k - held + 1), k):
             share = -_product(response, against[other % held])
             _add(response, share, linear.responses[other % held])
@@ -445,10 +477,14 @@ def _take(b: TractionBox, change: NDArray, unit: float) -> None:
 
 
 @compiled(**CALLED)
-def _twice_energy(b: TractionBox) -> float:
-    """Set the response to the slip under the trial traction; return twice its energy over a cell."""
+def _twice_energy(b: TractionBox, rims: TractionRims | None) -> float:
+    """Set the response to the slip under the trial traction; return twice its energy over a cell.
+
+    With rims there is none.
+    """
     convolve_traction(b.convolution, b.trial, b.nx, b.ny, b.pitch, b.work, b.response)
     _add(b.response, 1.0, b.rigid)
+    add_left(rims, b.bound, b.trial, b.response)
     return _product(b.trial, b.response) + _product(b.trial, b.rigid)
 
 
@@ -474,7 +510,9 @@ def _shorten(b: TractionBox) -> None:
 
 
 @compiled(**LOOP, nogil=True)
-def solve_traction(b: TractionBox, linear: LinearProblem, task: TractionTask) -> tuple[int, int, float]:
+def solve_traction(
+    b: TractionBox, linear: LinearProblem, rims: TractionRims | None, task: TractionTask
+) -> tuple[int, int, float]:
     """Solve for tractions within the bound, opposite to the slip where they reach it, without slip elsewhere.
 
     Starts from the traction of the box, cut to the bound. Newton's iteration, projected on the discs and
@@ -486,6 +524,8 @@ def solve_traction(b: TractionBox, linear: LinearProblem, task: TractionTask) ->
     largest = 0.0
     convolutions = 1
     iteration = 0
+    least = np.inf
+    waited = 0
     for q in range(len(b.bound)):
         b.trial[q] = _within(b.traction[q], b.bound[q])
         square = _square(b.rigid[q]) if b.bound[q] > 0.0 else 0.0
@@ -493,24 +533,31 @@ def solve_traction(b: TractionBox, linear: LinearProblem, task: TractionTask) ->
         largest = max(largest, square)
     last = np.sqrt(last)
     largest = np.sqrt(largest)
-    energy = _twice_energy(b)
+    set_bound(rims, b.bound)
+    energy = _twice_energy(b, rims)
     _adopt(b)
-    worst, norm = _judge(b, linear)
+    worst, norm = _judge(b, linear, rims)
     while worst > task.rtol * largest and iteration < task.max_iterations:
         iteration += 1
         if last > 0.0:
             damping = min(damping * norm / last, 1.0)
+        waited += 1
+        if norm < 0.5 * least:
+            least = norm
+            waited = 0
+        if rims is not None:  # without an energy nothing else ends a circle of solutions
+            damping = max(damping, min(LEAST * GROWTH ** (waited - PATIENCE), MOST))
         last = norm
-        _linearise(b, linear, damping, norm, task.diagonal)
-        convolutions += 1 + _solve_linear(b, linear, task)
+        _linearise(b, linear, rims, damping, norm, task.diagonal)
+        convolutions += 1 + _solve_linear(b, linear, rims, task)
         _take(b, linear.change, norm / task.diagonal)
-        reached = _twice_energy(b)
-        if task.symmetric and reached > energy + ROUNDING * abs(energy):
+        reached = _twice_energy(b, rims)
+        if rims is None and task.symmetric and reached > energy + ROUNDING * abs(energy):
             damping = max(RETREAT * damping, LEAST)
             last = 0.0
             _shorten(b)
             reached = _product(b.trial, b.response) + _product(b.trial, b.rigid)
         energy = reached
         _adopt(b)
-        worst, norm = _judge(b, linear)
+        worst, norm = _judge(b, linear, rims)
     return iteration, convolutions, worst / largest if largest > 0.0 else worst

@@ -1,0 +1,145 @@
+"""Friction on covered cells: against closed forms and the limit of small cells, and how many contacts settle.
+
+    python benchmarks/covered_friction.py            # errors with 6 and 9 cells in the smaller semi-axis
+    python benchmarks/covered_friction.py --settle   # contacts at random: which do not settle
+
+Balls and ellipses of like bodies, anywhere on the grid, beside those on whole cells. Shifts are Cattaneo's
+and Mindlin's, exact without Poisson's ratio. The limit of steady rolling is told by whole cells on two grids,
+of 40 and 80 cells, in first order; its errors are those of both forces over the friction and of the moment
+over that and the mean semi-axis. Rough contacts have heights that are smoothed by a Gaussian of 1.5 cells.
+"""
+
+import argparse
+import math
+import warnings
+
+import numpy as np
+from scipy.ndimage import gaussian_filter
+
+from asperity import FrictionalHalfSpace, HalfSpace, Hertz, Material
+from asperity.errors import OutOfRangeWarning, UnconvergedWarning
+
+FRICTION, SHEAR, LOAD, RADIUS = 0.3, 1e9, 100.0, 0.1
+OFFSETS = [(0.0, 0.0), (0.5, 0.5), (0.4, 0.2)]
+"""Of the middle of a contact from that of a cell, in cells."""
+RATIOS = (1.0, 0.4, 2.5)
+"""Second radius over the first."""
+SHARES = (0.2, 0.3, 0.6, 0.9)
+"""Of what friction carries, in a shift."""
+MOTIONS = {
+    "creepages, some spin": [(2e-3, 0.0, 0.0), (0.0, 2e-3, 0.0), (2e-3, 1.5e-3, 2e-3), (0.0, 0.0, 2e-3)],
+    "much spin": [(1e-3, 0.0, 5e-3), (0.0, 0.0, 8e-3)],
+    "all pivots": [(0.0, 0.0, 2e-2)],
+}
+"""Creepages, and spin times the mean semi-axis."""
+SETTLING = 150
+
+
+def contact(across, ratio, nu, offset, cells, shape=1.0, rough=None):
+    """A contact of so many cells in its smaller semi-axis; its solver, semi-axes, and its middle, m."""
+    modulus = SHEAR / (1.0 - nu)
+    smooth = Hertz(modulus, RADIUS / ratio, RADIUS)
+    axes = smooth.semi_axes(smooth.approach(LOAD))
+    sides = np.array([math.sqrt(shape), 1.0 / math.sqrt(shape)]) * min(axes) / across
+    counts = tuple(2 * math.ceil(axis / side) + 5 for axis, side in zip(axes, sides, strict=True))
+    middle = np.multiply(offset, sides)
+    x, y = (s * (np.arange(n) - 0.5 * (n - 1)) - m for n, s, m in zip(counts, sides, middle, strict=True))
+    curvatures = np.array((ratio / RADIUS, 1.0 / RADIUS))
+    gap = 0.5 * np.add.outer(curvatures[0] * x**2, curvatures[1] * y**2)
+    if cells == "covered":
+        gap += curvatures @ sides**2 / 24.0
+    if rough is not None:
+        rms, random = rough
+        heights = gaussian_filter(random.normal(size=counts), 1.5, mode="wrap")
+        gap -= rms * smooth.approach(LOAD) * heights / heights.std()
+    space = HalfSpace(counts, tuple(sides), modulus, cells=cells)
+    body = Material("body", 2.0 * SHEAR * (1.0 + nu), nu, 7850.0)
+    solver = FrictionalHalfSpace(space, (body, body), FRICTION)
+    return space.solve(gap, load=LOAD), solver, axes, middle
+
+
+def shifted(across, cells):
+    """Largest errors of shift and stick area of a ball, over those of Cattaneo and Mindlin."""
+    errors = []
+    for offset in OFFSETS:
+        normal, solver, (a, _), _ = contact(across, 1.0, 0.0, offset, cells)
+        full = 3.0 * FRICTION * LOAD / (4.0 * SHEAR * a)
+        for share in SHARES:
+            found = solver.shift(normal, force=(-share * FRICTION * LOAD, None))
+            shift = full * (1.0 - (1.0 - share) ** (2 / 3))
+            stick = math.pi * a**2 * (1.0 - share) ** (2 / 3)
+            errors.append((found.creepage[0] / shift - 1.0, found.stick_area / stick - 1.0))
+    return np.abs(errors).max(axis=0)
+
+
+def rolled(across, ratio, motion, offset, cells):
+    """Forces over friction, and the moment over that and the mean semi-axis, about the middle."""
+    normal, solver, axes, (x, y) = contact(across, ratio, 0.3, offset, cells)
+    mean = math.sqrt(axes[0] * axes[1])
+    xi, eta, spin = motion[0], motion[1], motion[2] / mean
+    found = solver.roll(normal, (xi + spin * y, eta - spin * x), spin)
+    along, aside = found.force
+    moment = found.moment - (x * aside - y * along)
+    return np.array((along, aside, moment / mean)) / found.limit
+
+
+def errors():
+    """Print the table of errors."""
+    print("| largest error, % | covered, 6 | 9 | whole, 6 | 9 |")
+    columns = [(across, cells) for cells in ("covered", "whole") for across in (6, 9)]
+    found = np.array([shifted(*each) for each in columns])
+    for name, values in zip(("shift of a ball", "its stick area"), found.T, strict=True):
+        print(f"| {name} |", " | ".join(f"{100.0 * each:.2f}" for each in values), "|")
+    for name, motions in MOTIONS.items():
+        largest = np.zeros(len(columns))
+        for ratio in RATIOS:
+            for motion in motions:
+                coarse, fine = (rolled(n, ratio, motion, OFFSETS[0], "whole") for n in (40, 80))
+                limit = 2.0 * fine - coarse
+                for k, (across, cells) in enumerate(columns):
+                    misses = [rolled(across, ratio, motion, each, cells) - limit for each in OFFSETS]
+                    largest[k] = max(largest[k], np.abs(misses).max())
+        print(f"| rolling, {name} |", " | ".join(f"{100.0 * each:.2f}" for each in largest), "|")
+
+
+def random_state(seed, rms, cells, way):
+    """A shift, a contact in steady rolling, or the fifth step of a transient, drawn at random."""
+    random = np.random.default_rng(seed)
+    ratio, shape = np.exp(random.uniform(-1.2, 1.2)), np.exp(random.uniform(-0.7, 0.7))
+    across, offset = random.uniform(5.0, 16.0), random.uniform(-0.5, 0.5, 2)
+    normal, solver, axes, _ = contact(across, ratio, 0.3, offset, cells, shape, (rms, random))
+    mean = math.sqrt(axes[0] * axes[1])
+    xi, eta, spin = 10.0 ** random.uniform(-4.5, -2.0) * random.normal(size=3) * (random.random(3) < 0.7)
+    if way == "shift":
+        return solver.shift(normal, (xi * mean, eta * mean), spin)
+    if way == "steady rolling":
+        return solver.roll(normal, (xi, eta), spin / mean)
+    state = solver.shift(normal)
+    for _ in range(5):
+        state = solver.roll(normal, (xi, eta), spin / mean, before=state)
+    return state
+
+
+def settle():
+    """Print how many contacts do not settle, and the convolutions of one in the middle of them."""
+    print(f"| of {SETTLING} | rms, approaches | covered: not settled | convolutions | whole: not settled | |")
+    for way in ("shift", "steady rolling", "step of a transient"):
+        for rms in (0.0, 0.02, 0.05):
+            row = []
+            for cells in ("covered", "whole"):
+                found = [random_state(seed, rms, cells, way) for seed in range(SETTLING)]
+                row.append(sum(not each.converged for each in found))
+                row.append(round(float(np.median([each.convolutions for each in found]))))
+            print(f"| {way} | {rms} |", " | ".join(map(str, row)), "|", flush=True)
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("--settle", action="store_true", help="which contacts do not settle")
+    asked = parser.parse_args()
+    warnings.simplefilter("ignore", UnconvergedWarning)
+    warnings.simplefilter("ignore", OutOfRangeWarning)
+    if asked.settle:
+        settle()
+    else:
+        errors()

@@ -1,0 +1,99 @@
+"""Contacts with friction on cells that are covered in part: what their rims leave, from step to step."""
+
+import numpy as np
+
+from asperity.arguments import Array, Complex, Flags, require
+from asperity.contact.friction import SlidingContact
+from asperity.contact.solved import Contact
+from asperity.kernels.traction_rims import find_left, set_bound, traction_rims
+from asperity.written_numbers import rounded
+
+
+def rows_ahead(distance: float, side: float, steady: bool) -> int:
+    """Number of cells in a rolled distance, m, of sides along the rolling direction, m.
+
+    Raises
+    ------
+    InputError
+        If it is none that covered cells roll by.
+    """
+    rows = round(distance / side)
+    fits = abs(distance - rows * side) <= 1e-6 * side and (rows == 1 or not steady)
+    allowed = f"{'' if steady else 'whole numbers of '}the length of a cell, {rounded(side * 1e6, 6)} µm"
+    remedy = 'Leave it out, or take cells = "whole".'
+    require(fits, "rolled distance on covered cells", f"{rounded(distance * 1e6, 6)} µm", allowed, remedy)
+    return rows
+
+
+def free_slip(normal: Contact, last: Contact, rows: int, poisson: float) -> tuple[Flags, Array]:
+    """Cells in contact (nx, ny) whose material was beyond it so many rows ahead, and its free slip.
+
+    Of a contact after the last one; slip over traction, m/Pa: displacements are to the gap, near a leading
+    edge, as tractions to pressures.
+    """
+    pressure = normal.pressure
+    enters = _entering(pressure, last.pressure, rows)
+    ahead = np.zeros(pressure.shape)
+    ahead[:-rows] = last.gap[rows:]
+    softness = np.zeros(pressure.shape)
+    softness[enters] = ahead[enters] / ((1.0 - poisson) * pressure[enters])
+    return enters, softness
+
+
+def left_ahead(
+    state: SlidingContact, rows: int, sides: tuple[float, float], poisson: float
+) -> tuple[Complex, Array]:
+    """What rims leave in a state (nx, ny), m, so many rows ahead of a cell: see `kernels.traction_rims`.
+
+    And what of it comes from the traction of the cell itself, over that, m/Pa. Sides of a cell over the shear
+    modulus, m/Pa. Zero beyond the contact, where slip is that of `free_slip`.
+    """
+    traction = state.traction[0] + 1j * state.traction[1]
+    pressure = state.normal.pressure
+    rolls = state.speed > 0.0
+    enters = _entering(pressure, pressure, max(rows, 1)) & (state.bound > 0.0) & rolls
+    left, outer, normal = _left_in(state.bound, traction, enters, sides, poisson)
+    behind = np.zeros(pressure.shape)
+    if rows == 1:  # the material behind has the share of both
+        entered = enters[1:]
+        bound = (state.bound[1:] + state.bound[:-1])[entered]
+        behind[:-1][entered] = np.maximum(outer[1:][entered], 0.0) / bound
+        both = (traction[1:] + traction[:-1])[entered] / bound
+        turn = normal[1:][entered]
+        both -= poisson * (both * turn.conj()).real * turn
+        left[1:][entered] = -outer[1:][entered] * both
+    found = np.zeros_like(left)
+    found[: len(found) - rows] = left[rows:]
+    return found, behind
+
+
+def slip_ahead(state: SlidingContact, rows: int) -> Complex:
+    """Slip over the distance in a state that rolled (nx, ny), of cells that slip so many rows ahead."""
+    slips = np.where(state.sticks, 0.0, state.slip[0] + 1j * state.slip[1])
+    found = np.zeros_like(slips)
+    if state.speed > 0.0:
+        found[: len(found) - rows] = slips[rows:]
+    return found
+
+
+def _entering(pressure: Array, last: Array, rows: int) -> Flags:
+    """Cells in contact (nx, ny) that were not so many rows ahead in the last contact, or not on the grid."""
+    enters = pressure > 0.0
+    enters[:-rows] &= last[rows:] == 0.0
+    return enters
+
+
+def _left_in(
+    bound: Array, traction: Complex, enters: Flags, sides: tuple[float, float], poisson: float
+) -> tuple[Complex, Array, Complex]:
+    """What rims leave in cells (nx, ny), what those of the bound leave, m, and the normals of those."""
+    nx, ny = bound.shape
+    idle = ((0, 0), (0, 1))  # a cell between the rows
+    flat_bound, flat_traction, entering = (np.pad(each, idle).ravel() for each in (bound, traction, enters))
+    rims = traction_rims(sides, poisson, ny + 1, 0, entering, np.zeros(len(entering)))
+    set_bound(rims, flat_bound)
+    find_left(rims, flat_bound, flat_traction)
+    left, outer, normal = (
+        each.reshape(nx, ny + 1)[:, :ny].copy() for each in (rims.left, rims.bound_left, rims.bound_normal)
+    )
+    return left, outer, normal

@@ -1,0 +1,230 @@
+"""Friction on cells that are covered in part: closed forms, printed coefficients, and finer grids."""
+
+import math
+
+import numpy as np
+import pytest
+
+from asperity import FrictionalHalfSpace, HalfSpace, Hertz, Material
+from asperity.kernels.traction_influence import (
+    means_of_pressure,
+    means_of_traction,
+    pressure_displacement,
+    traction_displacement,
+)
+from refusals import refusals
+
+FRICTION, SHEAR, LOAD, RADIUS = 0.3, 1e9, 100.0, 0.1
+OFFSETS = [(0.0, 0.0), (0.5, 0.5), (0.3, 0.1)]
+"""Of the middle of a contact from that of a cell, in cells."""
+
+
+def elliptic(across, ratio=1.0, nu=0.3, offset=(0.0, 0.0), cells="covered", friction=FRICTION, shape=1.0):
+    """A contact of so many cells in its smaller semi-axis; its solver, semi-axes and middle.
+
+    The first radius is the second over `ratio`, the first side of a cell `shape` times the second.
+    """
+    modulus = SHEAR / (1.0 - nu)
+    smooth = Hertz(modulus, RADIUS / ratio, RADIUS)
+    axes = smooth.semi_axes(smooth.approach(LOAD))
+    sides = np.array([math.sqrt(shape), 1.0 / math.sqrt(shape)]) * min(axes) / across
+    counts = tuple(2 * math.ceil(axis / side) + 5 for axis, side in zip(axes, sides, strict=True))
+    x, y = (
+        side * (np.arange(n) - 0.5 * (n - 1) - place)
+        for n, side, place in zip(counts, sides, offset, strict=True)
+    )
+    curvatures = ratio / RADIUS, 1.0 / RADIUS
+    gap = 0.5 * np.add.outer(curvatures[0] * x**2, curvatures[1] * y**2)
+    if cells == "covered":  # the mean over a cell
+        gap += float(np.dot(curvatures, sides**2)) / 24.0
+    space = HalfSpace(counts, tuple(sides), modulus, cells=cells)
+    body = Material("body", 2.0 * SHEAR * (1.0 + nu), nu, 7850.0)
+    solver = FrictionalHalfSpace(space, (body, body), friction)
+    return space.solve(gap, load=LOAD), solver, axes, np.multiply(offset, sides)
+
+
+def rolled(across, motion, **more):
+    """Forces over friction, and the moment over that and the mean axis, of steady rolling; and its contact.
+
+    The spin, times the mean axis, is about the middle of the contact.
+    """
+    normal, solver, axes, (x, y) = elliptic(across, **more)
+    mean = math.sqrt(axes[0] * axes[1])
+    xi, eta, spin = motion[0], motion[1], motion[2] / mean
+    found = solver.roll(normal, (xi + spin * y, eta - spin * x), spin)
+    assert found.converged
+    along, across_it = found.force
+    moment = found.moment - (x * across_it - y * along)
+    return np.array((along, across_it, moment / mean)) / found.limit, found
+
+
+def mindlin(share, a, nu):
+    """Shift and stick radius of a ball under a share of what friction carries, m."""
+    full = 3.0 * FRICTION * LOAD * (2.0 - nu) / (8.0 * SHEAR * a)
+    return full * (1.0 - (1.0 - share) ** (2 / 3)), a * (1.0 - share) ** (1 / 3)
+
+
+@pytest.mark.parametrize("offset", OFFSETS)
+def test_a_ball_that_is_shifted_is_cattaneos_and_mindlins(offset):
+    """Exact without Poisson's ratio; where all sticks, the traction ends without bound at the rim."""
+    for across, least, most in ((6, 0.002, 0.012), (12, 0.0005, 0.001)):
+        normal, solver, (a, _), _ = elliptic(across, nu=0.0, offset=offset)
+        for share in (0.1, 0.3, 0.6, 0.9):
+            found = solver.shift(normal, force=(-share * FRICTION * LOAD, None))
+            shift, stick = mindlin(share, a, 0.0)
+            assert found.creepage[0] == pytest.approx(shift, rel=least)
+            assert found.stick_area == pytest.approx(math.pi * stick**2, rel=most)
+            assert found.slip_area == pytest.approx(normal.area - found.stick_area, abs=1e-20)
+
+
+def test_the_force_of_a_shift_is_smooth_where_whole_cells_make_steps():
+    shares = np.linspace(0.3, 0.7, 25)
+    scatter = {}
+    for cells in ("covered", "whole"):
+        normal, solver, (a, _), _ = elliptic(6, nu=0.0, cells=cells)
+        shifts = np.array([mindlin(share, a, 0.0)[0] for share in shares])
+        forces = [-solver.shift(normal, (shift, 0.0)).force[0] / (FRICTION * LOAD) for shift in shifts]
+        stiffness = np.diff(forces) / np.diff(shifts)
+        exact = np.diff(shares) / np.diff(shifts)
+        scatter[cells] = np.std(stiffness / exact)
+    assert scatter["covered"] < 0.005
+    assert scatter["whole"] > 4.0 * scatter["covered"]
+
+
+KALKER = {  # J. J. Kalker (1990), table E3: c11, c22, c23, printed with three digits
+    (1.0, 0.25): (4.12, 3.67, 1.47),
+    (1.0, 0.0): (3.40, 3.40, 1.33),
+    (1.0, 0.5): (5.20, 3.98, 1.64),
+}
+
+
+@pytest.mark.parametrize(("body", "printed"), KALKER.items())
+def test_small_creepages_of_nine_cells_give_kalkers_coefficients(body, printed):
+    """Within what is printed; those of whole cells are 4 to 5 % off."""
+    _, nu = body
+    small = 1e-6
+    unit = elliptic(9, nu=nu)
+    mean = unit[2][0]
+    scale = SHEAR * mean**2 * small / (100.0 * FRICTION * LOAD)
+    found = [
+        rolled(9, motion, nu=nu, offset=(0.3, 0.1), friction=100.0 * FRICTION)[0] / scale
+        for motion in ((small, 0.0, 0.0), (0.0, small, 0.0), (0.0, 0.0, small))
+    ]
+    coefficients = -found[0][0], -found[1][1], -found[2][1]
+    assert coefficients == pytest.approx(printed, rel=0.012)
+
+
+MOTIONS = [(2e-3, 0.0, 0.0), (0.0, 2e-3, 0.0), (2e-3, 1.5e-3, 2e-3), (0.0, 0.0, 1.5e-3)]
+
+
+@pytest.mark.parametrize(("ratio", "shape"), [(1.0, 1.0), (0.4, 1.0), (2.5, 1.5)])
+def test_steady_rolling_is_that_of_the_limit_of_small_cells(ratio, shape):
+    """Whole cells are of first order: their limit is told by two grids, and they are far from it."""
+    for motion in MOTIONS:
+        coarse, fine = (rolled(n, motion, ratio=ratio, cells="whole")[0] for n in (30, 60))
+        limit = 2.0 * fine - coarse
+        largest = 0.0
+        for offset in OFFSETS:
+            found, _ = rolled(6, motion, ratio=ratio, shape=shape, offset=offset)
+            largest = max(largest, np.abs(found - limit).max())
+        whole = np.abs(rolled(6, motion, ratio=ratio, shape=shape, cells="whole")[0] - limit).max()
+        assert largest < 0.005
+        assert largest < 0.5 * whole
+
+
+def test_errors_of_rolling_fall_faster_than_those_of_whole_cells():
+    motion = (3e-3, 0.0, 0.0)
+    limit = rolled(30, motion)[0][0]
+    errors = {
+        cells: [abs(rolled(n, motion, cells=cells, offset=(0.3, 0.1))[0][0] - limit) for n in (5, 10)]
+        for cells in ("covered", "whole")
+    }
+    assert errors["covered"][1] < 0.3 * errors["covered"][0]
+    assert errors["whole"][1] > 0.4 * errors["whole"][0]
+    assert errors["covered"][1] < 0.05 * errors["whole"][1]
+
+
+def test_a_transient_ends_in_steady_rolling_and_keeps_its_energy():
+    normal, solver, (a, b), _ = elliptic(7, ratio=0.7, offset=(0.3, 0.1))
+    motion = (4e-3, -3e-3), 8e-3 / math.sqrt(a * b)
+    steady = solver.roll(normal, *motion)
+    state = solver.shift(normal)
+    work = 0.0
+    driven = 0.0
+    for _ in range(90):
+        before = state.force
+        state = solver.roll(normal, *motion, before=state)
+        assert state.converged
+        work += state.work
+        driven -= 0.5 * np.dot(np.add(before, state.force), motion[0])
+        driven -= 0.5 * motion[1] * state.moment
+    assert state.traction == pytest.approx(steady.traction, abs=1e-3 * steady.bound.max())
+    assert state.force == pytest.approx(steady.force, rel=2e-4)
+    assert state.elastic_energy == pytest.approx(steady.elastic_energy, rel=2e-4)
+    assert steady.work > 0.0
+
+
+def test_forces_are_mirrored_and_turned_with_what_moves():
+    normal, solver, *_ = elliptic(7)
+    along = solver.shift(normal, (2e-6, 0.0))
+    across = solver.shift(normal, (0.0, 2e-6))
+    assert across.force[1] == pytest.approx(along.force[0], rel=1e-5)
+    assert across.traction[1] == pytest.approx(along.traction[0].T, abs=1e-4 * along.bound.max())
+    forwards = solver.roll(normal, (2e-3, 1e-3), 1.0)
+    mirrored = solver.roll(normal, (2e-3, -1e-3), -1.0)
+    assert mirrored.force == pytest.approx((forwards.force[0], -forwards.force[1]), rel=1e-5)
+    assert mirrored.moment == pytest.approx(-forwards.moment, rel=1e-5)
+
+
+def smooth_field(x, y):
+    return np.exp(-(x**2) / 18.0 - (y - 1.0) ** 2 / 24.0) * (1.0 + 0.2 * x)
+
+
+@pytest.mark.parametrize("ahead", [0.0, 1.0])
+def test_means_over_cells_displace_means_over_cells(ahead):
+    """A smooth field on cells three times as small, whose own error is ninety times as small."""
+    dx, dy, nu, n, parts = 1.0, 0.8, 0.3, 41, 3
+
+    def convolved(influence, field):
+        shape = [a + b for a, b in zip(influence.shape, field.shape, strict=True)]
+        return np.fft.ifft2(np.fft.fft2(influence, shape) * np.fft.fft2(field, shape))
+
+    def places(count, side, beside):
+        return side * np.arange(1.0 - count - beside, count + beside)
+
+    def displaced(count, sides, by_traction, by_pressure, beside):
+        x, y = places(count, sides[0], beside)[:, None] + ahead, places(count, sides[1], beside)[None, :]
+        influences = [*by_traction(x, y, *sides, nu), by_pressure(x, y, *sides)]
+        middle = slice(count - 1, 2 * count - 1)
+        return [lambda field, each=each: convolved(each, field)[middle, middle] for each in influences]
+
+    fine = [(np.arange(parts * n) + 0.5) / parts * side - 0.5 * n * side for side in (dx, dy)]
+    field = smooth_field(fine[0][:, None], fine[1][None, :])
+    small = (dx / parts, dy / parts)
+    exact = displaced(parts * n, small, traction_displacement, pressure_displacement, 0)
+    means = displaced(n, (dx, dy), means_of_traction, means_of_pressure, 1)
+
+    def mean(values):
+        return values.reshape(n, parts, n, parts).mean(axis=(1, 3))
+
+    for reference, coarse in zip(exact, means, strict=True):
+        wanted = mean(reference(field))
+        assert np.abs(coarse(mean(field)) - wanted).max() < 2e-3 * np.abs(wanted).max()
+
+
+def rolled_by(cells_long, starts):
+    normal, solver, *_ = elliptic(5)
+    before = solver.shift(normal) if starts else None
+    return solver.roll(normal, (1e-3, 0.0), before=before, distance=cells_long * solver.half_space.spacing[0])
+
+
+test_distances_that_covered_cells_do_not_roll_by_are_refused = refusals(
+    (1.5, False, r"rolled distance on covered cells: received \S+ µm; allowed: the length of a cell, \S+ µm"),
+    (2.0, False, 'Leave it out, or take cells = "whole".'),
+    (0.4, True, "allowed: whole numbers of the length of a cell"),
+    of=rolled_by,
+)
+
+
+def test_a_step_of_a_transient_may_be_several_cells_long():
+    assert rolled_by(2.0, True).converged
