@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from asperity import FrictionalHalfSpace, HalfSpace, Hertz, Material
+from asperity.contact.creep import creep_curve
 from asperity.kernels.traction_influence import (
     means_of_pressure,
     means_of_traction,
@@ -162,6 +163,19 @@ def test_a_transient_ends_in_steady_rolling_and_keeps_its_energy():
     assert state.force == pytest.approx(steady.force, rel=2e-4)
     assert state.elastic_energy == pytest.approx(steady.elastic_energy, rel=2e-4)
     assert steady.work > 0.0
+
+
+def test_rough_samples_roll_on_whole_cells_and_count_by_their_share_of_the_smooth_force():
+    heights = 0.1 * elliptic(6)[0].approach * np.random.default_rng(3).normal(size=(170, 17))
+    found = {}
+    for cells in ("covered", "whole"):
+        normal, solver, axes, _ = elliptic(6, cells=cells)
+        assert heights.shape[1] == normal.half_space.shape[1]
+        curve = creep_curve(solver, normal, axes, creepages=[2e-3], samples=[heights])
+        found[cells] = curve.force[:, 0]
+    smooth, rough = found["covered"]
+    assert rough / smooth == pytest.approx(found["whole"][1] / found["whole"][0], rel=1e-3)
+    assert smooth < 0.96 * found["whole"][0]
 
 
 def test_forces_are_mirrored_and_turned_with_what_moves():

@@ -10,6 +10,7 @@ import pytest
 import asperity
 from asperity.case.beam import BallOnBeam
 from asperity.case.bodies import WheelOnRail
+from asperity.contact.creep import creep_curve
 from asperity.contact.hertz import stick_stiffness
 from asperity.contact.wear import EnergyWear, wear_depth
 from asperity.errors import CaseError
@@ -72,6 +73,27 @@ def test_a_wheel_that_heads_for_the_field_side_creeps_to_the_other_and_is_pushed
     assert creeping({}) == creeping({"angle_of_attack": 0.0}) == {}
     asked = friction_of(WheelOnRail(**KEYS | {"creep": FALLING, "contact": {"friction": 0.4}}))
     assert (asked.static, asked.kinetic, asked.velocity) == (0.4, 0.5, 0.3)
+
+
+@pytest.mark.parametrize(
+    ("contact", "cells"),
+    [
+        ({}, "covered"),
+        ({"rim_cells": "covered"}, "covered"),
+        ({"rim_cells": "whole"}, "whole"),
+        ({"hardness": "4 GPa"}, "whole"),
+    ],
+)
+def test_smooth_bodies_creep_on_covered_cells(contact, cells):
+    """And not by more than Kalker's linear theory, as on whole cells of the same grid."""
+    case = WheelOnRail(**KEYS | {"contact": KEYS["contact"] | contact})
+    prepared = prepare(case)
+    rolling, smooth = smooth_with_friction(prepared, friction_of(case))
+    assert rolling.half_space.cells == smooth.half_space.cells == cells
+    assert smooth.force == pytest.approx(prepared.shape.load, rel=1e-6)
+    curve = creep_curve(rolling, smooth, prepared.shape.semi_axes, count=12)
+    assert curve.slopes[0] < 1.0 if cells == "covered" else curve.slopes[0] > 1.01
+    assert curve.force[0, -1] == pytest.approx(curve.limit, rel=1e-3)
 
 
 def test_friction_follows_the_contact_force_by_its_coefficient_in_full_slip(computed, creeping):

@@ -163,13 +163,14 @@ def rolled_over(
 
     The rough surface moves through the contact with the material, as asperities do where bodies roll: each
     comes in without traction. Yields, for each of the motions (ξ, η, φ), the smooth contact in steady rolling
-    and those over the sample that count in transient rolling, in steps of the same length.
+    and those over the sample that count in transient rolling, in steps of the same length, on whole cells.
 
     Raises
     ------
     InputError
         If the sample has no room for it.
     """
+    rolling, smooth = _on_whole_cells(rolling, smooth)
     space = rolling.half_space
     body = smooth.undeformed_gap
     length = contact_rows(smooth)
@@ -195,6 +196,16 @@ def rolled_over(
             state = roll(contact, (xi, eta), spin, before=state, start=start)
             found.append(state)
         yield steady, found[UNCOUNTED * length // stride :]
+
+
+def _on_whole_cells(rolling: FrictionalHalfSpace, smooth: Contact) -> tuple[FrictionalHalfSpace, Contact]:
+    """The same on whole cells, whose steps may be long, and on which all rough contacts settle."""
+    space = rolling.half_space
+    if space.cells == "whole":
+        return rolling, smooth
+    whole_space = HalfSpace(space.shape, space.spacing, space.modulus, space.hardness)
+    whole_rolling = FrictionalHalfSpace(whole_space, rolling.bodies, rolling.friction, rolling.coupled)
+    return whole_rolling, whole_space.solve(smooth.undeformed_gap, load=smooth.force)
 
 
 def over_smooth(steady: SlidingContact, found: list[SlidingContact], axis: int) -> tuple[float, float]:
@@ -332,7 +343,7 @@ MOST, HALVINGS = 100.0, 12
 """Times the creepages, and part of them, between which full slip is sought; halvings of that interval."""
 CREEP_CHANGE, LOAD_CHANGE = 0.05, 0.25
 """Shares by which creepage and load are changed for slopes of the force; less moves single cells."""
-ROUNDING = 1e-9
+ROUNDING = 1e-7
 """Share of what friction carries below which a force is none: it would be opposite by symmetry."""
 
 

@@ -129,6 +129,7 @@ class FrictionalHalfSpace:
         require(known, "bodies", arguments.shown(bodies), allowed)
         refuse_period(half_space, "a contact with friction")
         self.half_space = half_space
+        self.bodies = bodies
         self.coupled = coupled
         self.friction = friction if isinstance(friction, Friction) else Friction(friction)
         nu = np.array([body.poisson_ratio for body in bodies])

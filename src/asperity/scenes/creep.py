@@ -9,6 +9,7 @@ import numpy as np
 from asperity.arguments import Array, Complex
 from asperity.case.scene import Case
 from asperity.contact import creep
+from asperity.contact.elastic_grid import MOST_ELONGATED
 from asperity.contact.friction import Friction, SlidingContact, cell_places
 from asperity.contact.solved import Contact
 from asperity.contact.tangential import FrictionalHalfSpace
@@ -59,10 +60,18 @@ def friction_of(case: Case) -> Friction:
 
 
 def smooth_with_friction(of: PreparedCase, friction: Friction) -> tuple[FrictionalHalfSpace, Contact]:
-    """What rolls, as the first body, on what it rolls over; and their smooth contact under the load."""
+    """What rolls, as the first body, on what it rolls over; and their smooth contact under the load.
+
+    On covered cells, whose error is of second order, unless whole ones are asked for, surfaces flow, or cells
+    are too long for them.
+    """
     case = of.case
     shape = of.shape
-    space = shape.whole_half_space(case.contact.hardness)
+    elongation = max(shape.spacing) / min(shape.spacing)
+    covers = case.contact.rim_cells != "whole" and case.contact.hardness is None
+    if shape.cells == "whole" and covers and elongation <= MOST_ELONGATED:
+        shape = shape.over_cells()
+    space = shape.half_space(None) if covers else shape.whole_half_space(case.contact.hardness)
     bodies = case.rolling.material, case.rolled_over.material
     smooth = space.solve(shape.body, load=shape.load, rtol=case.numerics.rtol)
     return FrictionalHalfSpace(space, bodies, friction), smooth
@@ -117,7 +126,8 @@ def creep_group(computed: compute.Computed) -> Values:
             rows.append(np.mean([_facts(each) for each in states], axis=0) + missed)
             shown = states[-1] if shown is first else shown
     force = computed.stacked("contact_force")
-    bodies = creep.CreepingBodies(rolling, shape.body, creepage, speed, max(float(force.max()), shape.load))
+    largest = max(float(force.max()), shape.load)
+    bodies = creep.CreepingBodies(rolling, smooth.undeformed_gap, creepage, speed, largest)
     power = bodies.power(force)
     ways = schema.WAYS if "track" in computed.quantities else schema.WAYS_OFF_TRACK
     return {
