@@ -99,6 +99,8 @@ class SlidingContact:
         How the solution ended.
     creepage_curvature : float
         χ, by which the creepage along is less at y across, over y², 1/m².
+    distance : float
+        Rolled distance over which slip is counted, m; zero for a shift.
 
     Notes
     -----
@@ -137,6 +139,7 @@ class SlidingContact:
     residual: float
     outcome: Outcome
     creepage_curvature: float = 0.0
+    distance: float = 0.0
 
     @property
     def converged(self) -> bool:
@@ -174,7 +177,7 @@ class SlidingContact:
         if space.sides is None:
             return float(self.sticks.sum()) * space.cell_area
         missing = np.where(self.sticks, np.maximum(self.bound - np.hypot(*self.traction), 0.0), 0.0)
-        return cells_covered(missing, *space.sides) * space.cell_area
+        return min(cells_covered(missing, *space.sides) * space.cell_area, self.normal.area)
 
     @property
     def slip_area(self) -> float:

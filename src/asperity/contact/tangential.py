@@ -15,7 +15,7 @@ from asperity.contact.halfspace import HalfSpace
 from asperity.contact.periodic import refuse_period
 from asperity.contact.pressed import at_load
 from asperity.contact.solved import Contact
-from asperity.contact.traction_rims import free_slip, left_ahead, rows_ahead, slip_ahead
+from asperity.contact.traction_rims import free_slip, left_ahead, left_by, rows_ahead, slip_ahead
 from asperity.errors import ComputationError, Outcome, OutOfRangeWarning, UnconvergedWarning, percent
 from asperity.kernels import traction as kernel
 from asperity.kernels.fourier import smooth_length
@@ -366,7 +366,7 @@ class FrictionalHalfSpace:
         """Elastic energy of tractions on covered cells, J."""
         traction = found.traction[0] + 1j * found.traction[1]
         moved = self.displacement(traction, np.zeros(self.half_space.shape))
-        moved += left_ahead(found, 0, self._sides, self.poisson_ratio)[0]
+        moved += left_by(found.bound, traction, self._sides, self.poisson_ratio, rolls=True)
         return 0.5 * float((traction.conj() * moved).real.sum()) * self.half_space.cell_area
 
     def _doubt(self, found: SlidingContact, manner: _Manner) -> None:
@@ -463,14 +463,18 @@ class FrictionalHalfSpace:
         if before is not None:
             traction = before.traction[0] + 1j * before.traction[1]
             past = self.displacement(traction, before.normal.pressure, manner.ahead)
-            if self._covers:
+            if self._covers and manner.ahead:
                 rows = round(manner.ahead / space.spacing[0])
                 left, behind = left_ahead(before, rows, self._sides, self.poisson_ratio)
                 past += left + behind * traction  # instead of which the traction counts that is asked for
         loaded = normal
         bound = self.friction.coefficient(velocity, slipped) * normal.pressure
         for _ in range(MAX_ROUNDS):
-            found = self._solve(loaded, bound, past, behind, motion, manner)
+            kept = past
+            if self._covers and before is not None and not manner.ahead:
+                # what sticks as the load changes keeps what is left: by the bound that there is now
+                kept = past + left_by(bound, traction, self._sides, self.poisson_ratio)
+            found = self._solve(loaded, bound, kept, behind, motion, manner)
             counts += found.iterations, found.convolutions
             if not (self.friction.falls or self._couples):
                 break
@@ -479,8 +483,8 @@ class FrictionalHalfSpace:
             velocity = 0.5 * (velocity + np.hypot(*found.slip) * manner.speed * slipping)
             slipped |= slipping
             if self._couples:
-                traction = found.traction[0] - 1j * found.traction[1]
-                gap = normal.undeformed_gap + _convolved(self._influence(0.0, False)[1], traction).real
+                drawn = found.traction[0] - 1j * found.traction[1]
+                gap = normal.undeformed_gap + _convolved(self._influence(0.0, False)[1], drawn).real
                 loaded = at_load(space, gap, normal.force, loaded.pressure, 1e-8)
             last = bound
             bound = self.friction.coefficient(velocity, slipped) * loaded.pressure
@@ -566,7 +570,7 @@ class FrictionalHalfSpace:
             stored = 0.5 * float(displaced.real.sum()) * self.half_space.cell_area
         return SlidingContact(
             normal, fields[:2], fields[2:4] * contact, sticks, bound, (xi, eta, spin), manner.speed,
-            math.nan, stored, iterations, convolutions, worst, outcome, manner.curvature,
+            math.nan, stored, iterations, convolutions, worst, outcome, manner.curvature, manner.ahead,
         )  # fmt: skip
 
 

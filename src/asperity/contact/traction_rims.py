@@ -17,7 +17,7 @@ def rows_ahead(distance: float, side: float, steady: bool) -> int:
     InputError
         If it is none that covered cells roll by.
     """
-    rows = round(distance / side)
+    rows = max(round(distance / side), 1)
     fits = abs(distance - rows * side) <= 1e-6 * side and (rows == 1 or not steady)
     allowed = f"{'' if steady else 'whole numbers of '}the length of a cell, {rounded(side * 1e6, 6)} µm"
     remedy = 'Leave it out, or take cells = "whole".'
@@ -50,8 +50,7 @@ def left_ahead(
     """
     traction = state.traction[0] + 1j * state.traction[1]
     pressure = state.normal.pressure
-    rolls = state.speed > 0.0
-    enters = _entering(pressure, pressure, max(rows, 1)) & (state.bound > 0.0) & rolls
+    enters = _entering(pressure, pressure, rows) & (state.bound > 0.0) & (state.distance > 0.0)
     left, outer, normal = _left_in(state.bound, traction, enters, sides, poisson)
     behind = np.zeros(pressure.shape)
     if rows == 1:  # the material behind has the share of both
@@ -62,17 +61,28 @@ def left_ahead(
         turn = normal[1:][entered]
         both -= poisson * (both * turn.conj()).real * turn
         left[1:][entered] = -outer[1:][entered] * both
-    found = np.zeros_like(left)
-    found[: len(found) - rows] = left[rows:]
-    return found, behind
+    return _ahead(left, rows), behind
 
 
 def slip_ahead(state: SlidingContact, rows: int) -> Complex:
     """Slip over the distance in a state that rolled (nx, ny), of cells that slip so many rows ahead."""
-    slips = np.where(state.sticks, 0.0, state.slip[0] + 1j * state.slip[1])
-    found = np.zeros_like(slips)
-    if state.speed > 0.0:
-        found[: len(found) - rows] = slips[rows:]
+    if state.distance == 0.0:
+        return np.zeros(state.bound.shape, complex)
+    return _ahead(np.where(state.sticks, 0.0, state.slip[0] + 1j * state.slip[1]), rows)
+
+
+def left_by(
+    bound: Array, traction: Complex, sides: tuple[float, float], poisson: float, *, rolls: bool = False
+) -> Complex:
+    """What rims leave by tractions under a bound (nx, ny), m; sides as in `left_ahead`."""
+    enters = _entering(bound, bound, 1) & rolls
+    return _left_in(bound, traction, enters, sides, poisson)[0]
+
+
+def _ahead(field: Complex, rows: int) -> Complex:
+    """A field so many rows ahead of a cell, zero beyond the grid."""
+    found = np.zeros_like(field)
+    found[:-rows] = field[rows:]
     return found
 
 
