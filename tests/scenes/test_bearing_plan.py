@@ -8,7 +8,7 @@ import asperity
 from asperity.case.cases import as_case
 from asperity.running import prepare_case
 from asperity.scenarios import compiling, raceway_laws, run_time
-from asperity.scenarios.prepared_bearing import CELL_TIME, expected, raceways_of
+from asperity.scenarios.prepared_bearing import CELL_TIME, expected, prepare_bearing, raceways_of
 from small_cases import BEARING
 
 BALLS = 9
@@ -57,6 +57,21 @@ def test_a_raceway_knows_the_ball_that_carries_least():
         ons = raceways_of(prepared, None)
         assert [each.least_load for each in ons] == [static.inner_load.min(), static.outer_load.min()]
         assert all((each.least_load >= 0.5 * each.load) is alike for each in ons)
+
+
+def test_surfaces_of_parts_alone_are_those_of_the_whole_bearing():
+    wavy = {"waviness": "10 nm"}
+    whole = prepare_bearing(as_case(BEARING | {"inner_raceway": wavy, "balls": wavy}))
+
+    def taken(**changes):
+        alone = prepare_bearing(whole.case.with_(**changes), beside=whole)
+        return [each in {*whole.raceways, *whole.balls} for each in (*alone.raceways, *alone.balls)]
+
+    assert taken() == [True] * (2 + BALLS)
+    assert taken(balls=None) == [True, True]
+    assert taken(fault=None) == [True, False] + [True] * BALLS
+    assert taken(inner_raceway=None, fault={"on": "ball"}) == [False, False, False] + [True] * (BALLS - 1)
+    assert taken(seed=2) == [False] * (2 + BALLS)
 
 
 def test_what_is_told_of_a_law_that_solves_every_step_is_at_most_all_balls_on_both_rings():

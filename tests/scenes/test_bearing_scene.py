@@ -233,21 +233,6 @@ def test_balls_differ_and_one_alone_has_the_fault():
     assert not np.allclose(prepared.balls[0].line, prepared.balls[1].line, atol=1e-9)
 
 
-def test_surfaces_of_parts_alone_are_those_of_the_whole_bearing():
-    wavy = {"waviness": "10 nm"}
-    whole = prepare_bearing(as_case(BEARING | {"inner_raceway": wavy, "balls": wavy} | {"fault": PIT}))
-
-    def taken(**changes):
-        alone = prepare_bearing(whole.case.with_(**changes), beside=whole)
-        return [each in {*whole.raceways, *whole.balls} for each in (*alone.raceways, *alone.balls)]
-
-    assert taken() == [True] * (2 + BALLS)
-    assert taken(balls=None) == [True, True]
-    assert taken(fault=None) == [True, False] + [True] * BALLS
-    assert taken(inner_raceway=None, fault={"on": "ball"}) == [False, False, False] + [True] * (BALLS - 1)
-    assert taken(seed=2) == [False] * (2 + BALLS)
-
-
 def test_several_faults_lie_where_they_are_and_each_is_heard():
     others = {"on": "inner"}, {"on": "ball", "ball": 4}, {"angle": "90 deg"}
     case = as_case(BEARING | {"fault": [PIT, *(PIT | each for each in others)], "duration": "0.4 s"})

@@ -254,8 +254,6 @@ class FrictionalHalfSpace:
         allowed = "a distance above 0, m"
         distance = self.half_space.spacing[0] if distance is None else distance
         distance = real("rolled distance", distance, allowed, above=0.0)
-        if self._covers:
-            rows_ahead(distance, self.half_space.spacing[0], before is None)
         speed = real("rolling speed", speed, "at least 0, m/s", at_least=0.0)
         curvature = real("curvature of the creepage", creepage_curvature, "a finite number, 1/m^2")
         manner = _Manner(distance, before is None, before, start or before, speed, rtol, curvature)
@@ -466,10 +464,10 @@ class FrictionalHalfSpace:
         behind = np.zeros(space.shape)
         counts = np.zeros(2, dtype=int)
         if before is not None:
+            rows = self._rows_ahead(manner)
             traction = before.traction[0] + 1j * before.traction[1]
             past = self.displacement(traction, before.normal.pressure, manner.ahead)
-            if self._covers and manner.ahead:
-                rows = round(manner.ahead / space.spacing[0])
+            if rows:
                 left, behind = left_ahead(before, rows, self._sides, self.poisson_ratio)
                 past += left + behind * traction  # instead of which the traction counts that is asked for
         loaded = normal
@@ -500,6 +498,12 @@ class FrictionalHalfSpace:
             found = replace(found, outcome=Outcome.ITERATION_LIMIT)
         return replace(found, iterations=int(counts[0]), convolutions=int(counts[1]))
 
+    def _rows_ahead(self, manner: _Manner) -> int:
+        """Number of covered cells in the rolled distance; zero for a shift, or on whole cells."""
+        if not (self._covers and manner.ahead):
+            return 0
+        return rows_ahead(manner.ahead, self.half_space.spacing[0], manner.steady)
+
     def _rims(
         self, normal: Contact, box: kernel.TractionBox, inside: tuple[slice, slice], manner: _Manner
     ) -> TractionRims:
@@ -507,15 +511,15 @@ class FrictionalHalfSpace:
         beyond = np.zeros(len(box.bound))
         enters = np.zeros(len(box.bound), bool)
         _, steady = manner.kernel
-        if manner.ahead:
+        rows = self._rows_ahead(manner)
+        if rows:
             last = manner.before.normal if manner.before else normal
-            rows = round(manner.ahead / self.half_space.spacing[0])
             entering, softness = free_slip(normal, last, rows, self.poisson_ratio)
             _cells(enters, box)[:] = entering[inside] & (_cells(box.bound, box) > 0.0)
             _cells(beyond, box)[:] = softness[inside]
         ahead = box.pitch if steady else 0
         rims = traction_rims(self._sides, self.poisson_ratio, box.pitch, ahead, enters, beyond)
-        if manner.before and manner.ahead:
+        if rows and manner.before:
             _cells(rims.earlier, box)[:] = manner.ahead * slip_ahead(manner.before, rows)[inside]
         return rims
 

@@ -78,10 +78,7 @@ def _origin(x: NDArray, y: NDArray, dx: float, dy: float) -> NDArray:
 
 def _second_differences(field: NDArray) -> tuple[NDArray, NDArray]:
     """Second differences along and across (..., n, m) of a field (..., n + 2, m + 2)."""
-    twice = 2.0 * field[..., 1:-1, 1:-1]
-    along = field[..., 2:, 1:-1] + field[..., :-2, 1:-1] - twice
-    across = field[..., 1:-1, 2:] + field[..., 1:-1, :-2] - twice
-    return along, across
+    return np.diff(field[..., 1:-1], 2, axis=-2), np.diff(field[..., 1:-1, :], 2, axis=-1)
 
 
 def _between_means(field: NDArray) -> NDArray:
