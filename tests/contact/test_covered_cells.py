@@ -70,13 +70,12 @@ def test_every_cell_at_a_rim_keeps_the_gap_of_the_curves(across, ratio, height, 
     columns = min(int(across_them[-1]) + 2, gap.shape[1]) - left
     lane = 16 if single else 8
     pitch = max(-(-columns // lane) * lane, columns + 2)
-    number, steep = found.number.tolist()
+    number = found.number.item()
     kept = found.kept.reshape(-1, rims.KEPT, rims.CHUNK)
-    known = kept.transpose(1, 0, 2).reshape(rims.KEPT, -1)[:, :steep].astype(float)
-    gaps = np.concatenate([known[rims.GAP], found.flat[steep:number]])
-    listed = {divmod(int(q), pitch): g for q, g in zip(found.cell[:number], gaps, strict=True)}
+    known = kept.transpose(1, 0, 2).reshape(rims.KEPT, -1)[:, :number].astype(float)
+    listed = {divmod(int(q), pitch): g for q, g in zip(found.cell[:number], known[rims.GAP], strict=True)}
     sides = np.divide(half_space.spacing, half_space.modulus)
-    expected = {}
+    expected, ratios = {}, []
     for i, j in zip(*np.nonzero(pressure[1:-1, 1:-1]), strict=True):
         x = pressure[i + 2, j + 1] - pressure[i, j + 1]
         y = pressure[i + 1, j + 2] - pressure[i + 1, j]
@@ -86,19 +85,22 @@ def test_every_cell_at_a_rim_keeps_the_gap_of_the_curves(across, ratio, height, 
             width = step / math.hypot(x / sides[0], y / sides[1])
             left_over = rim_curves.remaining_gap(math.sqrt(p / step), slant)[0]
             expected[int(i) - first, int(j) - left] = left_over * step * width
+            ratios.append(math.sqrt(p / step))
     assert len(expected) > 4 * across
     assert number == len(listed)
-    assert 0 < steep < number
     most = tolerance * max(expected.values())
     assert {cell: listed[cell] for cell in expected} == pytest.approx(expected, rel=0, abs=most)
     bare = [cell for cell in listed if cell not in expected]
     assert all(pressure[1 + first + i, 1 + left + j] == 0.0 or abs(listed[i, j]) < most for i, j in bare)
-    own, stiffness = known[rims.OWN], half_space.influence.taps[0]
-    assert (own < 0.0).all()
-    weight = 1.0 / (1.0 - 0.5 * own * stiffness)
-    alone = stiffness * (1.0 / (1.0 - own * stiffness) - weight**2)
-    np.testing.assert_allclose(known[rims.WEIGHT], weight, rtol=tolerance)
-    np.testing.assert_allclose(known[rims.ALONE], alone, rtol=1e3 * tolerance, atol=tolerance * stiffness)
+    softness = known[rims.SOFTNESS]
+    steep = [ratio < rims.STEEP_END for ratio in ratios]
+    assert 0 < sum(steep) < len(steep)
+    assert (softness[[list(listed).index(cell) for cell in expected]] > 1.0).tolist() == steep
+    np.testing.assert_allclose(known[rims.WEIGHT] * softness, 1.0, rtol=tolerance)
+    everywhere = np.ones(int(found.cell[:number].max()) + 1)
+    everywhere[found.cell[:number]] = softness
+    np.testing.assert_array_equal(found.softness[: len(everywhere)], everywhere)
+    np.testing.assert_allclose(found.weight[: len(everywhere)] * everywhere, 1.0, rtol=tolerance)
 
 
 @pytest.mark.parametrize("across", [6, 9])

@@ -43,6 +43,7 @@ def aligned(count: int, dtype: DTypeLike) -> NDArray:
 
 
 _compiled: Any = intrinsic  # makes a function of compiled code, whose first parameter is filled in
+_compiled_for: Any = intrinsic(prefer_literal=True)  # likewise, for each number that is written in a call
 
 
 class Lanes(types.Type):
@@ -137,6 +138,23 @@ def _operation(symbol: Any, instruction: str) -> None:
 _operation(operator.add, "fadd")
 _operation(operator.sub, "fsub")
 _operation(operator.mul, "fmul")
+
+
+@_compiled_for
+def sum_beside(typing: Any, before: Any, vector: Any, after: Any, distance: Any) -> Any:
+    """Sum of what lies a distance before and behind each lane, in three vectors one after the other.
+
+    The distance is written in the call, and at most a vector.
+    """
+    count, far = before.count, distance.literal_value
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        first, middle, last, _ = arguments
+        behind = builder.shuffle_vector(middle, last, _mask(list(range(far, count + far))))
+        ahead = builder.shuffle_vector(first, middle, _mask(list(range(count - far, 2 * count - far))))
+        return builder.fadd(ahead, behind)
+
+    return before(before, vector, after, distance), generate
 
 
 @_compiled

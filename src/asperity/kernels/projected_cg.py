@@ -1,6 +1,6 @@
 """Approximate inverse of the influence of pressure, as a short stencil on a set of cells."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,8 +17,9 @@ from asperity.kernels.edges import (
     weigh_target,
 )
 from asperity.kernels.influence import Convolution, convolve, quarter_spectrum
+from asperity.kernels.lanes import lanes, load, store, sum_beside
 from asperity.kernels.options import CALLED, INNER, REASSOCIATE, compiled
-from asperity.kernels.rims import Rims, bend, set_rims, set_shares, still_violated, weigh, weigh_step
+from asperity.kernels.rims import Rims, set_rims, set_shares, weigh
 
 
 def inverse_stencil(table: NDArray) -> NDArray:
@@ -45,38 +46,58 @@ def inverse_stencil(table: NDArray) -> NDArray:
     return coefficients
 
 
+@compiled(**INNER)
+def _beside_rows(taps: NDArray, b: Box, q: int) -> tuple[Any, Any, Any]:
+    """What is masked in a vector of cells, the sum above and below, and what they give to those beside."""
+    m = load(b.masked, 2 * b.pitch + q)
+    both = load(b.masked, b.pitch + q) + load(b.masked, 3 * b.pitch + q)
+    return m, both, taps[2] * m + taps[3] * both
+
+
+@compiled(**INNER)
+def _apply(taps: NDArray, b: Box, target: NDArray) -> None:
+    """Apply the stencil (Pa/m) to what is masked, m, into `target`.
+
+    Vectors begin where lines of the cache do, if rows do: those that do not would be read twice.
+    """
+    part = lanes(target)
+    before, _, given_before = _beside_rows(taps, b, -part)
+    now, both, given = _beside_rows(taps, b, 0)
+    for q in range(0, len(target), part):
+        after, both_after, given_after = _beside_rows(taps, b, q + part)
+        far = load(b.masked, q) + load(b.masked, 4 * b.pitch + q)
+        along = taps[0] * now + taps[1] * both + taps[4] * far
+        across = sum_beside(given_before, given, given_after, 1) + taps[5] * sum_beside(before, now, after, 2)
+        store(target, q, along + across)
+        before, now, both = now, after, both_after
+        given_before, given = given, given_after
+
+
 @compiled(**INNER, **REASSOCIATE)
-def precondition(b: Box, taps: NDArray, target: NDArray) -> tuple[float, float, float]:
+def precondition(b: Box, taps: NDArray, target: NDArray, rims: Rims | None) -> tuple[float, float, float]:
     """Apply the stencil (Pa/m) to what is masked, m, where that is not zero, into `target`.
 
-    Returns m·target, (m − previous)·target and the sum of the target.
+    At rims what is masked is weighed: with M its unweighed values, returns M·target, (M − previous)·target
+    and the sum of the target. A cell of the weight w there moves by about 1/(2/w − 1) of what others do to a
+    residual of its own, which is more than the w² of a stencil that is weighed on both sides.
     """
-    row = b.pitch
-    above = b.masked[row - 1 :]
-    m = b.masked[2 * row - 2 :]
-    below = b.masked[3 * row - 1 :]
-    top = b.masked
-    bottom = b.masked[4 * row :]
-    c0 = taps[0]
-    c1 = taps[1]
-    c2 = taps[2]
-    c3 = taps[3]
-    c4 = taps[4]
-    c5 = taps[5]
-    zero = b.z.dtype.type(0.0)
-    rho = zero
-    change = zero
-    total = zero
+    _apply(taps, b, target)
+    masked = b.masked[REACH * b.pitch :]
+    real = b.z.dtype.type
+    zero, half, one = real(0.0), real(0.5), real(1.0)
+    rho = change = total = zero
     for q in range(len(target)):
-        g = m[q + 2]
-        s = c0 * g + c1 * (above[q + 1] + below[q + 1]) + c2 * (m[q + 1] + m[q + 3])
-        s += c3 * (above[q] + above[q + 2] + below[q] + below[q + 2])
-        s += c4 * (top[q] + bottom[q]) + c5 * (m[q] + m[q + 4])
-        s = s if g != zero else zero
-        target[q] = s
+        g = masked[q]
+        s = target[q] if g != zero else zero
+        moved = s
+        if rims is not None:
+            weight = rims.weight[q]
+            s += taps[0] * (half - half * weight * weight) * (rims.softness[q] - one) * g
+            moved = weight * s
+        target[q] = moved
         rho += g * s
-        change += (g - b.previous[q]) * s
-        total += s
+        change += g * s - b.previous[q] * moved
+        total += moved
     return rho, change, total
 
 
@@ -86,18 +107,9 @@ def _precondition(
 ) -> tuple[float, float, float]:
     """Precondition as `precondition` does, and move the less what gives way at rims and edges."""
     weigh_masked(b, edges)
-    if rims is not None:
-        weigh(b, rims)
-    rho, change, total = precondition(b, taps, target)
+    rho, change, total = precondition(b, taps, target, rims)
     moved, lost = weigh_target(b, edges, target)
-    change += moved
-    total -= lost
-    if rims is not None:
-        own, moved, gained = weigh_step(b, rims, target)
-        rho += own
-        change += own - moved
-        total += gained
-    return rho, change, total
+    return rho, change + moved, total - lost
 
 
 WHOLE = 0.85
@@ -128,11 +140,16 @@ class Task(NamedTuple):
 
 
 @compiled(**INNER, **REASSOCIATE)
-def _free(pressure: NDArray, b: Box, hardness: float, level: float, tolerance: float) -> float:
-    """Mask the residual above a level with the free set; return how many cells violate complementarity."""
+def _free(
+    pressure: NDArray, b: Box, rims: Rims | None, hardness: float, level: float, tolerance: float
+) -> float:
+    """Mask the residual above a level with the free set, weighed at rims.
+
+    Returns how many cells violate complementarity.
+    """
     real = b.z.dtype.type  # numbers of another precision would be computed with in double
     zero = real(0.0)
-    one = real(1.0)
+    one, two = real(1.0), real(2.0)
     target = b.masked[REACH * b.pitch :]
     hardness = real(hardness)
     level = real(level)
@@ -143,8 +160,11 @@ def _free(pressure: NDArray, b: Box, hardness: float, level: float, tolerance: f
         r = b.residual[q] - level
         masked = r if p > zero else min(r, zero)
         masked = masked if p < hardness else max(masked, zero)
-        target[q] = masked
-        violated += zero if abs(masked) <= tolerance else one
+        allowed = tolerance
+        if rims is not None:
+            allowed *= two * rims.softness[q] - one
+        violated += zero if abs(masked) <= allowed else one
+        target[q] = masked if rims is None else masked * rims.weight[q]
     return violated
 
 
@@ -159,9 +179,9 @@ def _turn(b: Box, beta: float) -> None:
 
 @compiled(**INNER)
 def _turn_to_gradient(b: Box, level: float) -> None:
-    """Set the search direction to that of steepest descent, where cells at a bound may go, too."""
+    """Let the search go down the steepest way, where cells at a bound may go, too."""
     for q in range(len(b.z)):
-        b.direction[q] = level - b.residual[q]
+        b.z[q] = b.residual[q] - level
 
 
 @compiled(**INNER, **REASSOCIATE)
@@ -173,30 +193,27 @@ def _sum(values: NDArray) -> float:
 
 
 @compiled(**INNER, **REASSOCIATE)
-def _dot(left: NDArray, right: NDArray) -> float:
-    total = left.dtype.type(0.0)
-    for q in range(len(left)):
-        total += left[q] * right[q]
-    return total
-
-
-@compiled(**INNER, **REASSOCIATE)
-def _project(b: Box, length: float, hardness: float) -> tuple[float, float]:
-    """Set the step to a length along the direction, projected on the bounds.
+def _project(b: Box, beta: float, length: float, hardness: float) -> tuple[float, float]:
+    """Turn the search direction and set the step to a length along it, projected on the bounds.
 
     Returns its work against the residual, and how many cells the bounds held back.
     """
     real = b.z.dtype.type
     zero = real(0.0)
     one = real(1.0)
+    before = real(beta)
     factor = real(length)
     cap = real(hardness)
     work, clipped = zero, zero
     for q in range(len(b.z)):
-        wanted = b.pressure[q] + factor * b.direction[q]
+        z = b.z[q]
+        direction = before * b.direction[q] - z if z != zero else zero
+        b.direction[q] = direction
+        p = b.pressure[q]
+        wanted = p + factor * direction
         kept = min(max(wanted, zero), cap)
         clipped += one if kept != wanted else zero
-        step = kept - b.pressure[q]
+        step = kept - p
         b.step[q] = step
         work += b.residual[q] * step
     return work, clipped
@@ -211,10 +228,11 @@ def _aim(b: Box, aim: int, beta: float, length: float, level: float, task: Task)
             for q in range(len(b.unit)):
                 b.unit[q] = 1.0
         length = 1.0 / task.softest
-    else:
-        _turn(b, beta if aim == CONJUGATE else 0.0)
+    if aim != CONJUGATE:
+        beta = 0.0
     if task.total < 0.0:
-        return _project(b, length, task.hardness)
+        return _project(b, beta, length, task.hardness)
+    _turn(b, beta)
     work, clipped, _found = project_at_load(b, length, level, task.hardness, task.total)
     return work, clipped
 
@@ -230,18 +248,28 @@ def _leaves(b: Box, share: float, hardness: float) -> bool:
 
 
 @compiled(**INNER, **REASSOCIATE)
-def _advance(b: Box, rims: Rims | None, share: float, hardness: float, margin: float) -> None:
-    """Go a share of the step, within the bounds, and on them within a margin; then no gap is taken off."""
+def _advance(
+    b: Box, rims: Rims | None, share: float, hardness: float, margin: float, completed: float
+) -> None:
+    """Go a share of the step, within the bounds, and on them within a margin; then no gap is taken off.
+
+    Where the pressure is between them, `unit` is completed by another share.
+    """
     real = b.z.dtype.type
     zero = real(0.0)
-    factor = real(share)
+    factor, added = real(share), real(completed)
     cap = real(hardness)
     low = real(margin)
     high = real(hardness - margin)
     for q in range(len(b.z)):
-        wanted = b.pressure[q] + factor * b.step[q]
-        wanted = zero if wanted <= low else wanted
-        b.pressure[q] = cap if wanted >= high else wanted
+        step = b.step[q]
+        p = b.pressure[q] + factor * step
+        p = zero if p <= low else p
+        p = cap if p >= high else p
+        unit = b.unit[q] + added * step
+        unit = unit if p > zero else zero
+        b.pressure[q] = p
+        b.unit[q] = unit if p < cap else zero
     if rims is None:
         for q in range(len(b.z)):  # few arrays to a loop: else the compiler does not make vectors of it
             b.previous[q] = b.residual[q]
@@ -249,56 +277,43 @@ def _advance(b: Box, rims: Rims | None, share: float, hardness: float, margin: f
     else:
         for q in range(len(b.z)):
             b.previous[q] = b.residual[q]
-            b.residual[q] = rims.bare[q] + factor * b.response[q]
+            bare = rims.bare[q] + factor * b.response[q]
+            rims.bare[q] = bare
+            b.residual[q] = bare
 
 
 @compiled(**CALLED, **REASSOCIATE)
-def force_lacked(b: Box) -> float:
-    """What the sum of the pressure lacks, Pa, but for what is of second order.
+def force_lacked(b: Box) -> tuple[float, float]:
+    """Sum of the pressure, Pa, and what it lacks, but for what is of second order.
 
     On a contact set the pressure lacks A⁻¹r, where r is the gap that is left to close, and its sum lacks rᵀu,
     where Au = 1: what an approach adds to the pressure. If u is near that, the error is a product of two
     small ones.
     """
-    total = b.z.dtype.type(0.0)
+    total = lacked = b.z.dtype.type(0.0)
     for q in range(len(b.unit)):
-        total -= b.unit[q] * b.residual[q]
-    return total
+        total += b.pressure[q]
+        lacked -= b.unit[q] * b.residual[q]
+    return total, lacked
 
 
 @compiled(**INNER, **REASSOCIATE)
-def _missing(b: Box) -> float:
-    """What `unit` lacks along the step, as its sum less what it displaces there, Pa m."""
-    total = b.z.dtype.type(0.0)
-    for q in range(len(b.step)):
-        total += b.step[q] - b.unit[q] * b.response[q]
-    return total
+def _curvature(b: Box, rims: Rims | None, stiffness: float) -> tuple[float, float]:
+    """Curvature of the energy along the step, Pa m, with what cells at rims add to it.
 
-
-@compiled(**INNER)
-def _curvature(b: Box, rims: Rims | None, looks_ahead: bool) -> tuple[float, float]:
-    """Curvature of the energy along the step, Pa m, and what `unit` lacks there, if that is asked for."""
-    curvature = _dot(b.step, b.response)
-    missing = _missing(b) if looks_ahead else 0.0
-    if rims is not None:
-        bent, beside = bend(b, rims)
-        curvature += bent
-        missing -= beside
-    return curvature, missing
-
-
-@compiled(**INNER, **REASSOCIATE)
-def _complete(b: Box, share: float, hardness: float) -> None:
-    """Add a share of the step to `unit`, and keep it on the cells between the bounds."""
+    And what `unit` lacks there: the sum of the step less what `unit` displaces along it.
+    """
     real = b.z.dtype.type
-    zero = real(0.0)
-    factor = real(share)
-    cap = real(hardness)
-    for q in range(len(b.unit)):
-        p = b.pressure[q]
-        added = b.unit[q] + factor * b.step[q]
-        added = added if p > zero else zero
-        b.unit[q] = added if p < cap else zero
+    one, yields = real(1.0), real(2.0 / stiffness)
+    curvature = missing = real(0.0)
+    for q in range(len(b.step)):
+        step = b.step[q]
+        response = b.response[q]
+        if rims is not None:
+            response += yields * (rims.softness[q] - one) * step
+        curvature += step * response
+        missing += step - b.unit[q] * response
+    return curvature, missing
 
 
 @compiled(**INNER, **REASSOCIATE)
@@ -350,19 +365,17 @@ def _survey_row(b: Box, i: int, level: float, hardness: float, rims: Rims | None
 
 
 @compiled(**CALLED)
-def survey(
-    b: Box, task: Task, rims: Rims | None, stiffness: float
-) -> tuple[float, float, int, int, int, int]:
+def survey(b: Box, task: Task, rims: Rims | None) -> tuple[float, float, int, int, int, int]:
     """Find how well a pressure with a known residual solves the task, and where something is left to solve.
 
-    Residuals at rims count by the share that they move of what other cells would, whose stiffness is in Pa/m.
+    Residuals at rims count by the share that they move of what other cells would.
     Returns the largest complementarity residual, m; the approach beyond that of the overlap, m, zero if that
     is given and the bodies do not yield; and first and end row and column of the smallest box that holds all
     cells under pressure or in overlap, zeros if there are none.
     """
     level = find_level(b, task.hardness) if task.total >= 0.0 else 0.0
     if rims is not None:
-        set_shares(b, rims, stiffness)
+        set_shares(b, rims)
     first = b.nx
     end = 0
     left = 0
@@ -397,6 +410,8 @@ def _to_gradient(
     if task.total < 0.0:
         return rho, change
     mark_free(b, task.hardness, level)
+    if rims is not None:
+        weigh(b, rims)
     units = _precondition(b, taps, b.unit, rims, edges)[2]
     if rims is not None or edges.number[0]:
         mark_free(b, task.hardness, level)
@@ -430,13 +445,12 @@ def solve(
             level = find_level(b, cap)
         tolerance = task.rtol * (task.largest + level - yielded)
         if looks_ahead:
-            force = _sum(b.pressure) + force_lacked(b)
+            carried, lacked = force_lacked(b)
+            force = carried + lacked
             settled = abs(force - expected) <= SETTLED * task.rtol * force
             expected = force
             tolerance *= task.loose / task.rtol if settled else 1.0
-        violated = _free(b.pressure, b, cap, level, tolerance)
-        if rims is not None and 0.0 < violated <= rims.number[1]:
-            violated = still_violated(b, rims, violated, tolerance, taps[0])
+        violated = _free(b.pressure, b, rims, cap, level, tolerance)
         if not violated:
             break
         iteration += 1
@@ -456,7 +470,7 @@ def solve(
         convolve(c, b.step, b.nx, b.ny, b.pitch, b.work, b.response)
         sink_by_step(b, edges)
         further = _yield(b.step, task.compliance, b.response) if task.compliance > 0.0 else 0.0
-        curvature, missing = _curvature(b, rims, looks_ahead)
+        curvature, missing = _curvature(b, rims, taps[0])
         moving = curvature > 0.0
         if not moving:
             break
@@ -469,9 +483,7 @@ def solve(
             share = 1.0 if share >= WHOLE else share
         elif share > 1.0 and _leaves(b, share, cap):
             share = 1.0
-        _advance(b, rims, share, cap, margin)
-        if looks_ahead:
-            _complete(b, missing / curvature, cap)
+        _advance(b, rims, share, cap, margin, missing / curvature if looks_ahead else 0.0)
         sink_by_share(b, edges, share)
         set_rims(b, rims, level, taps[0], cap)
         yielded += share * further

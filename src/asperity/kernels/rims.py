@@ -16,8 +16,8 @@ p, and what is left is an overlap, a gap below zero.
 The curves, of `kernels.rim_curves`, are those of Hertz's contacts, whose cells are known. On cells that are
 not square, directions count on the grid, and the width is that of a cell along the normal.
 
-After each iteration cells at rims are listed, first those whose gap is steep: others, a third or more, keep a
-hundredth of it. They are computed by whole vectors: what is known of them is copied together, in chunks.
+After each iteration cells at rims are listed. They are computed by whole vectors: what is known of them is
+copied together, in chunks.
 """
 
 from typing import NamedTuple
@@ -42,8 +42,10 @@ MOST_BENT = 1.0 / 6.0
 """Bend, at most: that of a ball with six cells in the half-width. Smaller asperities are not resolved."""
 BEND_SHARE, BEND_LEFT = 0.85, 0.006
 """Bend at a rim over that of three cells inside, and what means over cells add to it: of balls."""
-STEEP_END = 0.9
-"""Largest √(p/S) of a cell whose gap is steep: beyond it a cell gives way as those that keep no gap."""
+STEEP_END = np.float32(0.9)
+"""Largest √(p/S) of a cell whose gap is steep: beyond it a cell gives way as those that keep none.
+
+Those, a third of them or more, keep a hundredth of it."""
 LEAST_SLOPE = np.float32(0.02)
 """Slope of a curve, at least, by which the pressure that a residual asks for is estimated."""
 MOST_LEFT = 2.2
@@ -68,16 +70,16 @@ of the differences its inverse and the width, m/Pa.
 """
 SIGN, BEYOND, NUMBERS = range(COLUMNS + EIGHT, COLUMNS + EIGHT + 3)
 """Behind these the sign of the gap, and what is left at the other border, m."""
-GAP, OWN, WEIGHT, ALONE, MASKED = range(5)
+GAP, SOFTNESS, WEIGHT = range(3)
 """What is kept of the cells of a chunk.
 
-The gap that is left, m. Where it is steep, the quotient of its difference up to the pressure that the
-residual asks for, not positive, m/Pa; weight of the cell where steps are preconditioned, and what it yields
-beyond that to a residual of its own, Pa/m; residual on the free set, m, before it is weighed.
+The gap that is left, m; the softness V of a cell, and 1/V, its weight where steps are preconditioned. Up to
+the pressure that the residual asks for, the gap falls by 2 (V - 1)/k with the pressure, where k is the
+stiffness of a cell among others, Pa/m.
 """
-KEPT = 5
-BYTES, GATHER, LAST = np.uint64(0x0101010101010101), np.uint64(0x0102040810204080), np.uint64(56)
-"""First bits of eight bytes; what brings them together in the last byte, and where that begins."""
+KEPT = 3
+GATHER, LAST = np.uint64(0x0102040810204080), np.uint64(56)
+"""What brings the first bits of eight bytes together in the last byte, and where that begins."""
 POSITIONS = np.array(
     [[*(i for i in range(8) if m >> i & 1), *range(8)][:8] for m in range(256)], np.uint8
 ).ravel()
@@ -93,13 +95,13 @@ class Rims(NamedTuple):
 
     along: float  # side of a cell over E*, m/Pa
     across: float  # likewise
-    number: NDArray  # (2,), number of cells at rims, and of those whose gap is steep, which come first
+    number: NDArray  # (1,), number of cells at rims
     cell: NDArray  # their places in the box
-    # what is kept of those with a steep gap, chunk after chunk: each number of all its cells
-    kept: NDArray
-    flat: NDArray  # gap that is left in the others, by number, m
+    kept: NDArray  # what is kept of them, chunk after chunk: each number of all its cells
+    softness: NDArray  # of all cells of the box, one elsewhere than at rims
+    weight: NDArray  # likewise
     bare: NDArray  # residual of all cells of the box with no gap taken off, m
-    marks: NDArray  # of the cells of the box: one for a steep gap, two for another
+    marks: NDArray  # of the cells of the box: one at a rim
     eights: NDArray  # eight of them in one number
     chunk: NDArray  # room for what is computed of a chunk
     places: NDArray  # (CHUNK,), where its rows of the curves begin
@@ -111,25 +113,32 @@ def rims(along: float, across: float, size: int, dtype: DTypeLike) -> Rims:
     chunks = -(-size // CHUNK)
     eights: NDArray = np.zeros(CHUNK * chunks // 8, dtype=np.uint64)
     return Rims(
-        along, across, np.zeros(2, dtype=np.int64), np.zeros(size + EIGHT, dtype=np.uint32),
-        aligned(KEPT * CHUNK * chunks, dtype), aligned(size + CHUNK, dtype), aligned(size, dtype),
-        eights.view(np.uint8), eights,
+        along, across, np.zeros(1, dtype=np.int64), np.zeros(size + EIGHT, dtype=np.uint32),
+        aligned(KEPT * CHUNK * chunks, dtype), aligned(size, dtype), aligned(size, dtype),
+        aligned(size, dtype), eights.view(np.uint8), eights,
         aligned(NUMBERS * CHUNK, dtype), np.zeros(CHUNK, dtype=np.int32), left_rows(np.dtype(dtype)),
     )  # fmt: skip
 
 
+@compiled(**INNER)
+def _is_at_rim(p: float, apart: float, x: float, y: float, wide: float, most: float) -> bool:
+    """Whether a cell is at a rim: its pressure is less than the step between its neighbours.
+
+    Not without pressure, if it stays apart by more than a rim leaves in any cell.
+    """
+    return bool(p * p < most * (x * x + y * y) and (p > ZERO or apart < wide * (x + y)))
+
+
 @compiled(**INNER, **REASSOCIATE)
 def _mark_rims(b: Box, rims: Rims, level: float, hardness: float) -> bool:
-    """Mark cells whose pressure is less than the step between their neighbours; keep the residual.
+    """Mark the cells at rims; level of residuals in m.
 
-    Not those without pressure that stay apart by more than a rim leaves in any cell; level of residuals in m.
     Where surfaces flow likewise, by what cells lack of the hardness. Returns whether any of them do.
     """
     real = b.z.dtype.type
     zero, one = real(0.0), real(1.0)
     flowing = zero
     most = real(END**4)
-    steep = real(STEEP_END**4)
     side = max(rims.along, rims.across)
     wide = real(side * MOST_LEFT)
     level = real(level)
@@ -138,29 +147,30 @@ def _mark_rims(b: Box, rims: Rims, level: float, hardness: float) -> bool:
     above = b.framed[margin - b.pitch :]
     middle = b.framed[margin - 1 :]
     below = b.framed[margin + b.pitch :]
-    for q in range(len(b.z)):
-        p = middle[q + 1]
-        lacked = cap - p
-        near = min(p, lacked)
-        apart = b.residual[q] - level
-        apart = apart if p <= lacked else -apart
-        x = abs(below[q] - above[q])
-        y = abs(middle[q + 2] - middle[q])
-        squares = x * x + y * y
-        at_rim = near * near < most * squares and (near > zero or apart < wide * (x + y))
-        flat = at_rim and near * near >= steep * squares
-        rims.marks[q] = np.uint8(at_rim) + np.uint8(flat)
-        flowing += one if lacked * lacked < most * squares else zero
-    for q in range(len(b.z)):
-        rims.bare[q] = b.residual[q]
+    if hardness < np.inf:
+        for q in range(len(b.z)):
+            p = middle[q + 1]
+            lacked = cap - p
+            apart = b.residual[q] - level
+            x = abs(below[q] - above[q])
+            y = abs(middle[q + 2] - middle[q])
+            apart = apart if p <= lacked else -apart
+            rims.marks[q] = np.uint8(_is_at_rim(min(p, lacked), apart, x, y, wide, most))
+            flowing += one if lacked * lacked < most * (x * x + y * y) else zero
+    else:
+        for q in range(len(b.z)):
+            x = abs(below[q] - above[q])
+            y = abs(middle[q + 2] - middle[q])
+            rims.marks[q] = np.uint8(_is_at_rim(middle[q + 1], b.residual[q] - level, x, y, wide, most))
     return flowing > zero
 
 
 @compiled(**INNER)
-def _list(rims: Rims, size: int, bit: int, found: int) -> int:
-    """List those of so many cells whose mark has a bit, behind those found; return how many there are."""
+def _list(rims: Rims, size: int) -> int:
+    """List those of so many cells that are marked; return how many there are."""
+    found = 0
     for k in range(size // 8):
-        byte = ((rims.eights[k] >> np.uint64(bit)) & BYTES) * GATHER >> LAST
+        byte = rims.eights[k] * GATHER >> LAST
         write_places(rims.cell, found, POSITIONS, np.int64(byte), 8 * k)
         found += COUNTS[byte]
     return found
@@ -209,7 +219,10 @@ def _place(c: NDArray, places: NDArray, count: int, side: float, elongation: flo
 
 @compiled(**INNER, **CONTRACT, **UNCHECKED)
 def _between(c: NDArray, k: int) -> tuple[float, float]:
-    """Gap that is left in a cell of a chunk, over S, and its slope from knot to knot, likewise, m/Pa."""
+    """Gap that is left in a cell of a chunk, over S, and its slope from knot to knot, likewise, m/Pa.
+
+    The slope is zero where the gap is not steep.
+    """
     o = COLUMNS * CHUNK + k
     slant = c[SLANT * CHUNK + k]
     left, slope = cubic(
@@ -220,21 +233,21 @@ def _between(c: NDArray, k: int) -> tuple[float, float]:
         c[WITHIN * CHUNK + k],
     )
     width = c[Y * CHUNK + k]
-    return width * left, width * min(slope, -LEAST_SLOPE / PER_UNIT)
+    steep = c[RATIO * CHUNK + k] < STEEP_END
+    return width * left, width * (min(slope, -LEAST_SLOPE / PER_UNIT) if steep else ZERO)
 
 
-@compiled(**CALLED, **CONTRACT, **UNCHECKED)
-def _find_gaps(c: NDArray, flat: NDArray, count: int) -> None:
-    """Find the gap that is left in the cells of a chunk."""
+@compiled(**INNER, **CONTRACT, **UNCHECKED)
+def _find_gaps(c: NDArray, gaps: NDArray, count: int) -> None:
+    """Find the gap that is left in the cells of a chunk, alone."""
     for k in range(count):
-        flat[k] = c[P * CHUNK + k] * _between(c, k)[0]
+        gaps[k] = c[P * CHUNK + k] * _between(c, k)[0]
 
 
 @compiled(**CALLED, **CONTRACT, **UNCHECKED)
-def _find_steep_gaps(c: NDArray, kept: NDArray, count: int, stiffness: float) -> None:
+def _find_kept(c: NDArray, kept: NDArray, count: int, stiffness: float) -> None:
     """Find all that is kept of the cells of a chunk, with one division."""
     stiffness = c.dtype.type(stiffness)
-    softness = -TWO / stiffness
     for k in range(count):
         ratio = c[RATIO * CHUNK + k]
         left, slope = _between(c, k)
@@ -243,14 +256,11 @@ def _find_steep_gaps(c: NDArray, kept: NDArray, count: int, stiffness: float) ->
         far = soft * soft + TWO * soft * ratio + ratio * ratio
         far -= stiffness * (c[UNMET * CHUNK + k] * c[X * CHUNK + k] - left)
         between = max(ratio + max(np.sqrt(max(far, ZERO)) - soft, ZERO), TOGETHER)
-        # the weight is 1 / (1 + soft / between), what a cell yields alone 1 / (1 + 2 soft / between)
-        once = between + soft
-        twice = once + soft
-        share = ONE / (between * once * once * twice)
+        softer = between + soft
+        share = ONE / (between * softer)
         kept[GAP * CHUNK + k] = c[P * CHUNK + k] * left
-        kept[OWN * CHUNK + k] = softness * soft * (once * once * twice * share)
-        kept[WEIGHT * CHUNK + k] = between * between * once * twice * share
-        kept[ALONE * CHUNK + k] = stiffness * (soft * soft * between * between * share)
+        kept[SOFTNESS * CHUNK + k] = softer * softer * share
+        kept[WEIGHT * CHUNK + k] = between * between * share
 
 
 @compiled(**INNER)
@@ -262,8 +272,9 @@ def _look(b: Box, rims: Rims, first: int, count: int, level: float) -> None:
     below = b.framed[margin + b.pitch :]
     level = b.z.dtype.type(level)
     c = rims.chunk
+    cells = rims.cell[first:]
     for i in range(count):
-        q = rims.cell[first + i]
+        q = cells[i]
         c[P * CHUNK + i] = middle[q + 1]
         c[X * CHUNK + i] = below[q] - above[q]
         c[Y * CHUNK + i] = middle[q + 2] - middle[q]
@@ -322,10 +333,27 @@ def _leave_to_flow(
 
 
 @compiled(**INNER)
-def _take(b: Box, rims: Rims, first: int, count: int, gaps: NDArray) -> None:
-    """Take gaps off the residual of cells, by number."""
+def _clear(rims: Rims, size: int) -> None:
+    """Let so many cells of a box be as soft as those elsewhere than at rims."""
+    for q in range(size):
+        rims.softness[q] = rims.weight[q] = 1.0
+
+
+@compiled(**INNER)
+def _soften(rims: Rims, kept: NDArray, i: int, q: int) -> None:
+    """Let a cell of the box be as soft as one of a chunk, by number."""
+    rims.softness[q] = kept[SOFTNESS * CHUNK + i]
+    rims.weight[q] = kept[WEIGHT * CHUNK + i]
+
+
+@compiled(**INNER)
+def _take(b: Box, rims: Rims, first: int, count: int) -> None:
+    """Take the gaps of so many cells from the first on, by number, off the residual; soften them."""
+    cells, kept = rims.cell[first:], rims.kept[KEPT * first :]
     for i in range(count):
-        b.residual[rims.cell[first + i]] -= gaps[i]
+        q = cells[i]
+        b.residual[q] -= kept[GAP * CHUNK + i]
+        _soften(rims, kept, i, q)
 
 
 @compiled(**CALLED)
@@ -338,45 +366,27 @@ def set_rims(b: Box, rims: Rims | None, level: float, stiffness: float, hardness
     """
     if rims is not None:
         flows = _mark_rims(b, rims, level, hardness)
-        steep = _list(rims, len(b.z), 0, 0)
-        number = _list(rims, len(b.z), 1, steep)
+        _clear(rims, len(b.z))
+        number = _list(rims, len(b.z))
         rims.number[0] = number
-        rims.number[1] = steep
         both = False
-        for first in range(0, steep, CHUNK):
-            count = min(CHUNK, steep - first)
+        for first in range(0, number, CHUNK):
+            count = min(CHUNK, number - first)
             kept = rims.kept[KEPT * first :]
             _look(b, rims, first, count, level)
             if flows:
                 both = _look_from_flow(rims.chunk, count, hardness)
-            _find_steep_gaps(rims.chunk, kept, _compute(rims, count), stiffness)
-            gaps = kept[GAP * CHUNK :]
+            _find_kept(rims.chunk, kept, _compute(rims, count), stiffness)
             if flows:
-                _leave_to_flow(b, rims, first, count, gaps, hardness, both)
-            _take(b, rims, first, count, gaps)
-        for first in range(steep, number, CHUNK):
-            count = min(CHUNK, number - first)
-            gaps = rims.flat[first:]
-            _look(b, rims, first, count, level)
-            if flows:
-                both = _look_from_flow(rims.chunk, count, hardness)
-            _find_gaps(rims.chunk, gaps, _compute(rims, count))
-            if flows:
-                _leave_to_flow(b, rims, first, count, gaps, hardness, both)
-            _take(b, rims, first, count, gaps)
-
-
-@compiled(**INNER)
-def _place_of(k: int) -> int:
-    """Place of the first number that is kept of a cell, by number."""
-    within = k & (CHUNK - 1)
-    return KEPT * (k - within) + within
+                _leave_to_flow(b, rims, first, count, kept[GAP * CHUNK :], hardness, both)
+            _take(b, rims, first, count)
 
 
 @compiled(**INNER)
 def _gap(rims: Rims, k: int) -> float:
     """Gap that is left in a cell, by number, m."""
-    return rims.kept[_place_of(k) + GAP * CHUNK] if k < rims.number[1] else rims.flat[k]
+    within = k & (CHUNK - 1)
+    return rims.kept[KEPT * (k - within) + GAP * CHUNK + within]
 
 
 @compiled(**INNER)
@@ -399,6 +409,14 @@ def lay_bare(b: Box, rims: Rims | None) -> None:
             rims.bare[rims.cell[k]] += _gap(rims, k)
 
 
+@compiled(**INNER)
+def without_rims(b: Box, rims: Rims | None) -> None:
+    """Begin with a residual of which no gap is taken off."""
+    if rims is not None:
+        rims.number[0] = 0
+        lay_bare(b, rims)
+
+
 @compiled(**INNER, **UNCHECKED)
 def move_rims(b: Box, rims: Rims | None, pitch: int, row: int, column: int) -> None:
     """Place cells at rims in a box that begins in a row and a column of theirs, whose pitch is given."""
@@ -406,78 +424,26 @@ def move_rims(b: Box, rims: Rims | None, pitch: int, row: int, column: int) -> N
         for k in range(rims.number[0]):
             i = rims.cell[k] // pitch
             rims.cell[k] += i * (b.pitch - pitch) - row * b.pitch - column
+        _clear(rims, len(b.z))
+        for first in range(0, rims.number[0], CHUNK):
+            cells, kept = rims.cell[first:], rims.kept[KEPT * first :]
+            for i in range(min(CHUNK, rims.number[0] - first)):
+                _soften(rims, kept, i, cells[i])
 
 
 @compiled(**INNER, **UNCHECKED)
-def _stiffness_share(rims: Rims, k: int, stiffness: float) -> float:
-    """How far a cell whose gap is steep gives way to a residual, over what a cell among others does."""
-    return 1.0 / (1.0 - rims.kept[_place_of(k) + OWN * CHUNK] * stiffness)
-
-
-@compiled(**CALLED)
-def still_violated(b: Box, rims: Rims, violated: float, tolerance: float, stiffness: float) -> float:
-    """Take those cells off a number of violated ones that are soft enough not to matter."""
-    margin = (len(b.masked) - len(b.residual)) // 2
-    for k in range(rims.number[1]):
-        m = abs(b.masked[margin + rims.cell[k]])
-        if m > tolerance and m * _stiffness_share(rims, k, stiffness) <= tolerance:
-            violated -= 1.0
-    return violated
-
-
-@compiled(**INNER)
-def set_shares(b: Box, rims: Rims, stiffness: float) -> None:
-    """Set `z` to what the residual of each cell counts for."""
+def set_shares(b: Box, rims: Rims) -> None:
+    """Set `z` to what the residual of each cell counts for: how far it moves, over what others do."""
     for q in range(len(b.z)):
-        b.z[q] = 1.0
-    for k in range(rims.number[1]):
-        b.z[rims.cell[k]] = _stiffness_share(rims, k, stiffness)
+        b.z[q] = 1.0 / (2.0 * rims.softness[q] - 1.0)
 
 
 @compiled(**INNER)
 def weigh(b: Box, rims: Rims) -> None:
     """Weigh what is masked by how much softer cells at rims are than others."""
     masked = b.masked[(len(b.masked) - len(b.residual)) // 2 :]
-    for k in range(rims.number[1]):
-        q = rims.cell[k]
-        o = _place_of(k)
-        m = masked[q]
-        rims.kept[o + MASKED * CHUNK] = m
-        masked[q] = m * rims.kept[o + WEIGHT * CHUNK]
-
-
-@compiled(**INNER)
-def weigh_step(b: Box, rims: Rims, target: NDArray) -> tuple[float, float, float]:
-    """Weigh a preconditioned residual likewise; return what m·target, previous·target and its sum gain."""
-    rho = 0.0
-    moved = 0.0
-    total = 0.0
-    for k in range(rims.number[1]):
-        q = rims.cell[k]
-        o = _place_of(k)
-        before = target[q]
-        m = rims.kept[o + MASKED * CHUNK]
-        alone = rims.kept[o + ALONE * CHUNK] * m
-        after = before * rims.kept[o + WEIGHT * CHUNK] + alone
-        target[q] = after
-        gained = after - before
-        rho += alone * m
-        moved += b.previous[q] * gained
-        total += gained
-    return rho, moved, total
-
-
-@compiled(**INNER)
-def bend(b: Box, rims: Rims) -> tuple[float, float]:
-    """Add up −step · (quotient of the gap) · step: the curvature that cells at rims add; and with `unit`."""
-    stored = 0.0
-    beside = 0.0
-    for k in range(rims.number[1]):
-        q = rims.cell[k]
-        closed = -rims.kept[_place_of(k) + OWN * CHUNK] * b.step[q]
-        stored += closed * b.step[q]
-        beside += closed * b.unit[q]
-    return stored, beside
+    for q in range(len(b.z)):
+        masked[q] *= rims.weight[q]
 
 
 @compiled(**INNER)

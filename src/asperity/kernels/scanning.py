@@ -19,6 +19,7 @@ from asperity.kernels.rims import (
     rims,
     set_rims,
     take_off,
+    without_rims,
 )
 
 TRUNCATED = 0.01
@@ -313,8 +314,9 @@ def _solve_within(
     true_residual(everywhere, outer, task, edges)
     if guessed and load < 0.0 and (not _scale(outer, hardness) or edges.number[0]):
         true_residual(everywhere, outer, task, edges)
+    without_rims(outer, b.room.rims)
     set_rims(outer, b.room.rims, 0.0, known.taps[0], hardness)
-    worst, level, top, bottom, near, far = survey(outer, task, b.room.rims, known.taps[0])
+    worst, level, top, bottom, near, far = survey(outer, task, b.room.rims)
     iterations: int = np.int64(0)  # type: ignore[assignment]  # a literal one would be compiled apart
     moving = True
     asked = b.rtol
@@ -345,11 +347,11 @@ def _solve_within(
         if part or not _recurs(outer, b.rtol):
             true_residual(everywhere, outer, task, edges)
             take_off(outer, b.room.rims)
-        worst, level, top, bottom, near, far = survey(outer, task, b.room.rims, known.taps[0])
+        worst, level, top, bottom, near, far = survey(outer, task, b.room.rims)
         moving = moving and not (again and worst > 0.9 * before)  # else rounding hides what is left
     total = _leave(outer, outer.pressure, pressure, first, left)
     if b.loose > 0.0:
-        total += force_lacked(outer)
+        total += force_lacked(outer)[1]
         _leave(outer, outer.unit, rise, first, left)
     converged = worst <= asked * (largest + level)
     return Solution(True, converged, iterations, worst / (largest + level), total, level, nx, ny)
