@@ -4,15 +4,17 @@ Balls whose overlap has 16 to 96 cells across, smooth and rough, in double preci
 takes them and in single precision as scans do. An iteration: what 24 contacts, each from nothing, take more
 if they are solved more accurately, over the iterations that they take more. A contact, with all surveys and
 copies: each from nothing in double precision; in single precision from those before, at 64 positions one
-after the other. Processor time in the compiled entry, the least of many short rounds in turn.
+after the other. Processor time in the compiled entry, the least of several short rounds in turn, and the mean
+of that over processes: by where a process finds its memory an iteration varies by a fifth.
 
     python benchmarks/covered_iterations.py c551c7ce
-    python benchmarks/covered_iterations.py c551c7ce --cells 16 32 --rounds 40
+    python benchmarks/covered_iterations.py c551c7ce --cells 16 32 --processes 20
 """
 
 from __future__ import annotations
 
 import argparse
+import itertools
 import json
 import os
 import subprocess
@@ -32,6 +34,10 @@ ROUGH = (0.001, 0.03, 0.1, 0.3)
 """Rms heights, over the approach."""
 TOLERANCES = {False: (1e-2, 1e-8, 1e-6), True: (1e-2, 1e-5, 4e-5)}
 """A looser and a tighter tolerance, and the one that is usual: in double and in single precision."""
+ROUNDS = 4
+"""Turns that a case has in a process."""
+KINDS = {"before": "whole", "covered": "covered", "whole": "whole"}
+"""What is measured, and its cells."""
 SHORTEST = 0.05
 """Time that a case is measured for before the next version has its turn, s."""
 
@@ -109,6 +115,12 @@ class Worker:
         print(json.dumps(case), file=self.process.stdin, flush=True)
         return json.loads(self.process.stdout.readline())
 
+    def end(self) -> None:
+        """Let the process end."""
+        assert self.process.stdin
+        self.process.stdin.close()
+        self.process.wait()
+
 
 def serve() -> None:
     """Measure what is asked for line by line."""
@@ -122,26 +134,38 @@ def summary(rounds: list[Any]) -> np.ndarray:
     return np.array([(tight[0] - loose[0]) / (tight[1] - loose[1]), usual[0], usual[0] / usual[1], usual[1]])
 
 
-def compare(old: Worker, new: Worker, options: argparse.Namespace) -> None:
+def measured(sources: dict[str, Path], options: argparse.Namespace) -> dict[tuple, dict[str, np.ndarray]]:
+    """What `summary` says of each case, in new processes."""
+    workers = {name: Worker(source) for name, source in sources.items()}
+    found = {}
+    for case in itertools.product((False, True), options.cells, ROUGH):
+        rounds: dict[str, list[Any]] = {name: [] for name in KINDS}
+        for _ in range(ROUNDS):
+            for name, kind in KINDS.items():
+                worker = workers["before" if name == "before" else "now"]
+                rounds[name].append(worker.ask(kind, *case))
+        found[case] = {name: summary(each) for name, each in rounds.items()}
+    for worker in workers.values():
+        worker.end()
+    return found
+
+
+def compare(sources: dict[str, Path], options: argparse.Namespace) -> None:
     """Print the table."""
-    workers = {"before": (old, "whole"), "covered": (new, "covered"), "whole": (new, "whole")}
+    processes = [measured(sources, options) for _ in range(options.processes)]
     print("| precision | cells across | rms / approach | an iteration before, us | covered | whole ", end="")
     print("| a contact: covered | whole | over iterations: covered | iterations: covered |")
     print(10 * "|---" + "|")
-    for single in (False, True):
-        for across in options.cells:
-            for rough in ROUGH:
-                found: dict[str, list[Any]] = {name: [] for name in workers}
-                for _ in range(options.rounds):
-                    for name, (worker, kind) in workers.items():
-                        found[name].append(worker.ask(kind, single, across, rough))
-                before, covered, whole = (summary(each) for each in found.values())
-                covered, whole = covered / before, whole / before
-                print(
-                    f"| {'single' if single else 'double'} | {across} | {rough} | {1e6 * before[0]:.2f} "
-                    f"| {covered[0]:.2f} | {whole[0]:.2f} | {covered[1]:.2f} | {whole[1]:.2f} "
-                    f"| {covered[2]:.2f} | {covered[3]:.2f} |", flush=True,
-                )  # fmt: skip
+    for case in processes[0]:
+        single, across, rough = case
+        means = {name: np.mean([each[case][name] for each in processes], axis=0) for name in KINDS}
+        before = means["before"]
+        covered, whole = means["covered"] / before, means["whole"] / before
+        print(
+            f"| {'single' if single else 'double'} | {across} | {rough} | {1e6 * before[0]:.2f} "
+            f"| {covered[0]:.2f} | {whole[0]:.2f} | {covered[1]:.2f} | {whole[1]:.2f} "
+            f"| {covered[2]:.2f} | {covered[3]:.2f} |"
+        )
 
 
 def main() -> None:
@@ -149,14 +173,14 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("commit", help="what the working tree is compared with")
     parser.add_argument("--cells", type=int, nargs="+", default=[16, 21, 28, 36, 48, 64, 96])
-    parser.add_argument("--rounds", type=int, default=10)
+    parser.add_argument("--processes", type=int, default=8)
     chosen = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         archive = subprocess.run(
             ["git", "archive", chosen.commit, "src"], cwd=ROOT, check=True, capture_output=True
         )
         subprocess.run(["tar", "-x", "-C", folder], input=archive.stdout, check=True)
-        compare(Worker(Path(folder) / "src"), Worker(ROOT / "src"), chosen)
+        compare({"before": Path(folder) / "src", "now": ROOT / "src"}, chosen)
 
 
 if __name__ == "__main__":
