@@ -3,6 +3,7 @@
     python benchmarks/cell_edges.py            # the curves, as they stand in contact/edges.py
     python benchmarks/cell_edges.py --check    # against flat punches and finer grids
     python benchmarks/cell_edges.py --faults   # balls over pits and spalls, against cells a quarter as large
+    python benchmarks/cell_edges.py --flow     # likewise with a hardness; what cells sink until they flow
 
 Near the straight edge of what carries, the pressure on an elastic half-space is A/√d at a distance d from
 it, whatever presses, and displaces all that carries alike: by U; beyond the edge by 4A/E* √|d| less. On
@@ -22,6 +23,15 @@ falls far off, it does up to l = (π A/(α E*))², as an edge would that lay l/3
 beyond it is α E*/2π ln((√(l − x) + √l)/|√(l − x) − √l|). So what cells sink by, on the way from γ p̄/E* to
 their mean depth, is known, too: the law of `contact.edges` is within 0.11 of that depth of it (`--check`).
 Its powers are those that leave the least over slopes of pits and spalls (`--faults`).
+
+Where surfaces flow at H, they do up to a length c from a deep edge (D. S. Dugdale, 1960, for cracks):
+
+    p = H,  d < c;     p = (2H/π) arcsin √(c/d) → A/√d, A = (2H/π) √c,  beyond.
+
+With s = √(c/b) a sound width b has the mean q H, q = (2/π)(arcsin s + s √(1 − s²)), where A alone would have
+x H, x = 4s/π: it flows at x = 4/π. So a cell sinks by x γ/E* times its share of H, in place of q γ/E*, and by
+what the means of both pressures displace otherwise: on cells in plane strain about half a width over E*,
+times that share. Both rise with q as 1 − (1 − q⁴)^(2/3) does (`--flow`).
 
 Cells next to those that are crossed should give way by up to 0.2 w less or more. Where the edge is slanted
 this averages out along it, but for `BEYOND` of a width, by which round punches would be too large: edges are
@@ -228,7 +238,7 @@ SLOPES = {
 """Depths of faults, and lengths over which they fall to their floor, m."""
 
 
-def force_over(fault, cell, middle, place, sharp=True):
+def force_over(fault, cell, middle, place, sharp=True, hardness=None):
     """Force, N, of a steel ball of 10 mm, pressed by 4 µm beside the middle of a fault on square cells, m."""
     count = 2 * round(0.36e-3 / cell) + 1
     at = (np.arange(count) - count // 2) * cell
@@ -241,7 +251,7 @@ def force_over(fault, cell, middle, place, sharp=True):
         depth = -np.mean([fault.heights(along + i, across + j) for i in parts for j in parts], axis=0)
         edges = Edges(*outline, depth, (cell, cell))
         heights = np.where(edges.sound, 0.0, heights)
-    space = HalfSpace(ball.shape, cell, 115e9)
+    space = HalfSpace(ball.shape, cell, 115e9, hardness)
     return space.solve(ball - heights, approach=4e-6, edges=edges).force
 
 
@@ -265,9 +275,61 @@ def check_faults(cell=30e-6, draws=8):
             print(f"| {name} | {kind} | {rms:.2f} | {most[0]:.2f} | {most[1]:.1f} |", flush=True)
 
 
+def flowing_force(width, length):
+    """Force per H up to widths from a deep edge, of surfaces that flow up to a length from it."""
+    width = np.asarray(width, dtype=float)
+    beyond = np.maximum(width, length)
+    inside = beyond * np.arcsin(np.sqrt(length / beyond)) + np.sqrt(length * (beyond - length))
+    return np.where(width < length, width, 2.0 / np.pi * inside)
+
+
+def print_flow(cells=4000):
+    """Print what cells at the edge of a deep step sink until their sound part flows, by closed forms."""
+
+    def antiderivative(x):
+        return x * np.log(np.maximum(np.abs(x), 1e-300)) - x
+
+    place = np.arange(cells)
+    displaced = -2.0 / np.pi * (antiderivative(place + 0.5) - antiderivative(place - 0.5))  # of strips
+    print("| q | x - q, over that at q = 1 | φ | widths over E*, at shares of 0.25, 0.5, 0.75, 1 |")
+    print("|---|---|---|---|")
+    for s in (0.2, 0.4, 0.6, 0.8, 0.9, 0.95, 1.0):
+        sinks = []
+        for share in (0.25, 0.5, 0.75, 1.0):
+            ends, length = share + place, s * s * share
+            elastic = np.diff(4.0 / np.pi * np.sqrt(length * ends), prepend=0.0)
+            flowing = np.diff(flowing_force(ends, length), prepend=0.0)
+            sinks.append(f"{displaced @ (elastic - flowing) / share:.3f}")
+        q = float(flowing_force(1.0, s * s))
+        more = (4.0 / np.pi * s - q) / (4.0 / np.pi - 1.0)
+        print(f"| {q:.3f} | {more:.3f} | {1.0 - (1.0 - q**4) ** (2 / 3):.3f} | {', '.join(sinks)} |")
+
+
+def check_flow(cell=30e-6, draws=220):
+    """Print that, and errors over pits and spalls of surfaces that flow, against cells an eighth as large."""
+    print_flow()
+    rng = np.random.default_rng(2024)
+    errors = {}
+    for _ in range(draws):
+        kind, hardness = str(rng.choice(["spall", "pit"])), float(rng.choice([1.5e9, 2e9, 2.5e9, 3e9, 4e9]))
+        depth = float(np.exp(rng.uniform(np.log(0.5e-6), np.log(100e-6))))
+        edge = float(rng.choice([0.0, 0.0, rng.uniform(20e-6, 200e-6)]))
+        middle, place = (rng.random(2) - 0.5) * cell, rng.uniform(0.0, 0.15e-3)
+        fault = Fault(kind, length=rng.uniform(0.30e-3, 0.40e-3), depth=depth, edge=edge)
+        coarse, fine = (
+            force_over(fault, each, middle, place, hardness=hardness) for each in (cell, cell / 8)
+        )
+        errors.setdefault((kind, hardness), []).append(100.0 * (coarse / fine - 1.0))
+    print("\n| fault | hardness, GPa | rms, % | most | cases |")
+    print("|---|---|---|---|---|")
+    for (kind, hardness), each in sorted(errors.items()):
+        rms, most = math.sqrt(np.mean(np.square(each))), np.abs(each).max()
+        print(f"| {kind} | {hardness / 1e9} | {rms:.2f} | {most:.2f} | {len(each)} |")
+
+
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     chosen = parser.add_mutually_exclusive_group()
-    for name, function in {"check": check, "faults": check_faults}.items():
+    for name, function in {"check": check, "faults": check_faults, "flow": check_flow}.items():
         chosen.add_argument(f"--{name}", dest="work", action="store_const", const=function)
     (parser.parse_args().work or print_curves)()

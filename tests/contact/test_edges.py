@@ -1,5 +1,6 @@
 """Cells that sharp edges cross: against flat punches, whose stiffness is printed, and against finer cells."""
 
+import itertools
 import math
 
 import numpy as np
@@ -137,13 +138,32 @@ def test_slopes_that_carry_are_less_of_an_edge(shape):
             assert over(fault).force == pytest.approx(over(fault, CELL / 4).force, rel=0.01)
 
 
-def test_where_surfaces_flow_the_sound_part_of_a_cell_carries_its_share():
+def test_where_surfaces_flow_forces_are_those_of_finer_cells():
+    """Cells whose sound part flowed all at once were up to 2.8 % off."""
+    shapes = ((0.28 * MM, 0.0), (5 * UM, 0.0), (2 * UM, 0.0), (50 * UM, 60 * UM), (5 * UM, 100 * UM))
     for shape in ("pit", "spall"):
-        fault = Fault(shape, length=0.36 * MM, depth=0.28 * MM)
-        coarse, fine = (over(fault, cell, hardness=2e9) for cell in (CELL, CELL / 4))
-        assert coarse.converged
-        assert coarse.pressure.max() <= 2e9
-        assert coarse.force == pytest.approx(fine.force, rel=0.016)
+        for size, (depth, edge) in itertools.product((0.31 * MM, 0.36 * MM, 0.40 * MM), shapes):
+            fault = Fault(shape, length=size, depth=depth, edge=edge)
+            coarse, fine = (over(fault, cell, hardness=2.2e9) for cell in (CELL, CELL / 4))
+            assert coarse.converged
+            assert coarse.pressure.max() <= 2.2e9
+            assert coarse.force == pytest.approx(fine.force, rel=0.011)
+
+
+def test_cells_come_to_flow_as_the_length_that_flows_before_an_edge_grows():
+    """Dugdale's closed form, in plane strain: q of the hardness where the softness alone asks for 4s/π."""
+    edges = Edges(np.zeros((1, 5)), np.zeros((1, 5)), np.ones((1, 5)), (CELL, CELL))
+    soft, elastic = (softness_at(edges, MODULUS, hardness) for hardness in (2e9, None))
+    assert_allclose(soft.flow, 1e9, rtol=1e-3)
+    width = CELL / MODULUS
+    for s in (0.3, 0.6, 0.8, 0.9, 1.0):
+        q = 2.0 / math.pi * (math.asin(s) + s * math.sqrt(1.0 - s * s))
+        pressure = np.full((1, 5), q * 1e9)
+        more = (soft.sunk(pressure) - elastic.sunk(pressure))[0, 2] / 1e9
+        closed = (4.0 / math.pi * s - q) * elastic.softness[0, 2]
+        assert closed < more < closed + 0.5 * width
+        assert more == pytest.approx(closed + 0.468 * s**3.7 * width, rel=0, abs=0.06 * width)
+    assert (soft.sunk(1.01 * pressure) > 1.15 * soft.sunk(pressure)).all()
 
 
 def test_contacts_that_flow_over_steps_and_slopes_settle():
@@ -153,7 +173,7 @@ def test_contacts_that_flow_over_steps_and_slopes_settle():
             fault = Fault(shape, length=size, depth=depth * UM, edge=edge * UM)
             contact = over(fault, hardness=2e9)
             assert contact.converged
-            assert contact.iterations < 50
+            assert contact.iterations < 30
 
 
 def test_the_tangent_is_the_central_difference():

@@ -151,9 +151,9 @@ def _solved(half_space: ElasticGrid, b: Block, positions: slice, device: Device)
     pressure = xp.zeros_like(gap)
     taps = tuple(influence.taps.tolist())
     edges = b.room.edges
-    fields = (edges.softness, edges.drop, edges.power, edges.flow) if len(edges.softness) else ()
+    fields = edges[:6] if len(edges.softness) else ()
     at_edges = [xp.asarray(each)[rows] for each in fields]
-    softest = influence.softest + float(edges.softness.max(initial=0.0)) + edges.yielding
+    softest = influence.softest + float((edges.softness + edges.yielding).max(initial=0.0))
     totals = []
     counts = np.zeros(4, dtype=np.int64)
     for approach in b.approaches.tolist():
@@ -163,13 +163,13 @@ def _solved(half_space: ElasticGrid, b: Block, positions: slice, device: Device)
         overlap = approach - gap[box]
         p = pressure[box]
         spectrum = xp.asarray(batched.padded_spectrum(influence.table, *p.shape[1:]))
-        task = batched.BatchTask(spectrum, taps, b.hardness, softest, b.max_iterations, edges.yielding)
+        task = batched.BatchTask(spectrum, taps, b.hardness, softest, b.max_iterations)
         fresh = ~p.any(axis=(1, 2))
         if bool(fresh.any()):
             p = xp.where(fresh[:, None, None], batched.first_guess(overlap, task, xp), p)
         tolerance = b.rtol * xp.maximum(overlap.max(axis=(1, 2)), 0.0)
-        soft = (each[box] for each in at_edges)
-        iterations, worst = batched.solve_batch(overlap, p, tolerance, task, xp, *soft)
+        soft = tuple(each[box] for each in at_edges)
+        iterations, worst = batched.solve_batch(overlap, p, tolerance, task, xp, soft)
         pressure[box] = p
         total = p.sum(axis=(1, 2))
         missed = worst > tolerance

@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 
 from asperity.arguments import Array
 from asperity.kernels.batched import compliance, sunk
@@ -32,6 +33,8 @@ to the width of a cell.
 Curves are even in the root of the slant: the smaller over the larger of what the sides of the cell are along
 the normal, 0 for an edge along the grid.
 """
+WHOLE = 0.4
+"""Place from which on cells are next to whole: the drop of those beside tells how deep it is there."""
 LEAST = 1e-3
 """What is kept at least: softer cells carry nothing that counts."""
 KEPT = np.loadtxt(Path(__file__).with_name("cell_edges.txt"), encoding="utf-8")
@@ -46,6 +49,16 @@ YIELDING = 30.0
 """Sides of a cell over E* by which it sinks with the pressure beyond that at which its sound part flows."""
 CARRYING = 0.5
 """Share of what is kept that flows no sooner: cells just beyond an edge carry in the place of others."""
+SOFTER = 0.273
+"""By how much of its softness a cell sinks more until its sound part flows: 4/π - 1."""
+FLOWING = (0.5, 0.65, 2.0, 2.5), (0.48, 0.2, 0.2, 0.0)
+"""Places, and widths over E* by which cells sink more under the hardness, until they flow: linear between.
+
+Of those that an edge crosses, in plane strain (``benchmarks/cell_edges.py --flow``); beyond, whole cells that
+the border of the flow crosses, on average. Less if the step is not deep beside a width times H/E*.
+"""
+CARRIED = 0.3
+"""Share of what would be carried by a slope that begins at the edge: others are steps."""
 
 
 class Softness(NamedTuple):
@@ -55,15 +68,16 @@ class Softness(NamedTuple):
     drop: Array  # to at most so much, m
     power: Array  # with which they come to that
     flow: Array  # pressure at which their sound part flows, Pa; infinite without hardness
-    yielding: float  # what they sink more beyond that, m/Pa
+    flowing: Array  # what they sink more until all of it does, m
+    yielding: Array  # and beyond that, m/Pa
 
     def sunk(self, pressure: Array) -> Array:
         """By how much cells sink more than others under a pressure, Pa; m."""
-        return sunk(*self, pressure, np)
+        return sunk(self, pressure, np)
 
     def compliance(self, pressure: Array) -> Array:
         """Derivative of what cells sink by the pressure, m/Pa."""
-        return compliance(*self, pressure, np)
+        return compliance(self, pressure, np)
 
     def covered_cells(self, pressure: Array, shares: Array) -> float:
         """Number of cells in contact, by their sound shares and, as far as it carries, the rest of them."""
@@ -77,18 +91,53 @@ def softness_at(edges: Edges, modulus: float, hardness: float | None) -> Softnes
     softness = np.zeros(edges.distance.shape)
     at = edges.crossed & (edges.drop > 0.0)
     along, across = edges.sides(at)
-    width = along + across
     kept = _kept(edges.places[at], np.minimum(along, across) / np.maximum(along, across))
-    softness[at] = width / modulus * (1.0 / kept - 1.0)
-    gives_way = softness > 0.0
-    drop = np.where(gives_way, edges.drop, FAR)
+    softness[at] = (along + across) / modulus * (1.0 / kept - 1.0)
     power = np.interp(edges.places, *POWERS)
-    flow = np.full(drop.shape, np.inf)
     if hardness is None:
-        return Softness(softness, drop, power, flow, 0.0)
-    flow[at] = hardness * np.maximum(edges.shares[at], CARRYING * kept)
-    flow[~gives_way] = np.inf
-    return Softness(softness, drop, power, flow, YIELDING * min(edges.spacing) / modulus)
+        none = np.zeros_like(softness)
+        drop = np.where(softness > 0.0, edges.drop, FAR)
+        return Softness(softness, drop, power, none + np.inf, none, none)
+    flow = np.full(softness.shape, hardness)
+    flow[at] *= np.maximum(edges.shares[at], CARRYING * kept)
+    return _with_flow(edges, modulus, hardness, softness, power, flow)
+
+
+def _with_flow(
+    edges: Edges, modulus: float, hardness: float, softness: Array, power: Array, flow: Array
+) -> Softness:
+    """Let cells of a softness flow from a pressure on, Pa, and whole ones beside the edge as well.
+
+    A slope that begins at the edge carries the part (1 - s) x/d of the rest of a cell, where s is its sound
+    share, x what it sinks, and d its depth where that ends: 2 drop/(1 - s). So it flows later the more it
+    has sunk, and sinks with the pressure beyond.
+    """
+    deepest = scipy.ndimage.maximum_filter(edges.drop, 5)
+    near = edges.sound & (edges.places < FLOWING[0][-1]) & (deepest > 0.0)
+    places, drop, deepest = edges.places[near], edges.drop[near], deepest[near]
+    drop = np.where((places < WHOLE) & (drop > 0.0), drop, deepest)
+    width = edges.sides(near).sum(axis=0) / modulus
+    soft = np.maximum(softness[near], LEAST * width)
+    carried = hardness * (1.0 - edges.shares[near]) ** 2 / (2.0 * drop)
+    flows = np.minimum(hardness, flow[near] / np.maximum(1.0 - CARRIED * carried * soft, LEAST))
+    singular = deepest / (deepest + hardness * width)
+    flowing = (SOFTER * soft + np.interp(places, *FLOWING) * singular * width) * flows
+    least = modulus / (YIELDING * min(edges.spacing))
+    yielding = 1.0 / np.maximum(carried, least)
+
+    def everywhere(values: Array, elsewhere: float) -> Array:
+        field = np.full(softness.shape, elsewhere)
+        field[near] = values
+        return field
+
+    return Softness(
+        everywhere(soft, 0.0),
+        everywhere(drop, FAR),
+        power,
+        everywhere(flows, np.inf),
+        everywhere(flowing, 0.0),
+        everywhere(yielding, 0.0),
+    )
 
 
 def _kept(place: Array, slant: Array) -> Array:

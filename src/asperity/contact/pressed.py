@@ -73,8 +73,7 @@ def block_of(
     """
     rows, body, planes, approaches = map(contiguous, (rows, body, planes, approaches))
     if soft is not None:
-        softness, drop, power, flow = map(contiguous, (soft.softness, soft.drop, soft.power, soft.flow))
-        soft = Softness(softness, drop, power, flow, soft.yielding)
+        soft = Softness(*map(contiguous, soft))
     k = len(approaches)
     shape = body.shape
     nx, ny = shape

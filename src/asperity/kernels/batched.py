@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from asperity.kernels.edges import SHARPEST
 from asperity.kernels.fourier import smooth_length
 from asperity.kernels.projected_cg import LEAST, MOST, OFTEN, PATIENCE, WHOLE
 
@@ -115,12 +116,12 @@ class _Members(NamedTuple):
     length: Array
     iterations: Array
     active: Array
-    # of cells at edges, as in `kernels.edges`, None where there is no edge: softness, m/Pa, drop, m, power,
-    # and pressure at which they flow, Pa
-    softness: Array | None
+    softness: Array | None  # of cells at edges, from here on as in `contact.edges`; None where there is none
     drop: Array | None
     power: Array | None
     flow: Array | None
+    flowing: Array | None
+    yielding: Array | None
 
 
 class BatchTask(NamedTuple):
@@ -131,7 +132,6 @@ class BatchTask(NamedTuple):
     hardness: float  # upper bound of the pressure, Pa (may be infinite)
     softest: float  # no pressure of unit norm displaces by more, m/Pa
     max_iterations: int
-    yielding: float = 0.0  # by how much more cells at edges sink beyond the pressure at which they flow, m/Pa
 
 
 def first_guess(overlap: Array, task: BatchTask, xp: Any) -> Array:
@@ -151,16 +151,13 @@ def solve_batch(
     tolerance: Array,
     task: BatchTask,
     xp: Any,
-    softness: Array | None = None,
-    drop: Array | None = None,
-    power: Array | None = None,
-    flow: Array | None = None,
+    at_edges: Sequence[Array] = (),
 ) -> tuple[Array, Array]:
     """Solve a task for many overlaps (b, nx, ny), m, from pressures, Pa, which are overwritten.
 
-    Softness, m/Pa, drop, m, and power of cells at edges and the pressure at which they flow, Pa, are given
-    for all cells. Returns for each the iterations and the largest complementarity residual, m: where that is
-    above its tolerance, the solution did not converge.
+    What is known of cells at edges, if there are any, is given for all cells, as in `contact.edges.Softness`.
+    Returns for each the iterations and the largest complementarity residual, m: where that is above its
+    tolerance, the solution did not converge.
 
     Residuals are carried on from step to step. Where they claim convergence, true ones confirm it, or the
     iteration goes on from these. Members that are done are frozen; as soon as half of a batch is, they are
@@ -171,8 +168,8 @@ def solve_batch(
     worst = xp.ones(count) * np.inf
     while True:
         residual = convolve_padded(pressure, task.spectrum, xp) - overlap
-        if softness is not None:
-            residual += sunk(softness, drop, power, flow, task.yielding, pressure, xp)
+        if at_edges:
+            residual += sunk(at_edges, pressure, xp)
         before = worst
         worst = _complementarity(pressure, residual, task.hardness, xp)
         active = (worst > tolerance) & (worst <= STUCK * before) & (iterations < task.max_iterations)
@@ -182,7 +179,7 @@ def solve_batch(
         none = xp.zeros(count)
         members = _Members(
             xp.arange(count), tolerance, pressure, residual, nothing, nothing, none, none + 1.0, iterations,
-            active, softness, drop, power, flow,
+            active, *(at_edges or 6 * (None,)),
         )  # fmt: skip
         while running := int(members.active.sum()):
             size = max(SMALLEST, 1 << (running - 1).bit_length())  # few: each needs a plan of transforms
@@ -194,21 +191,28 @@ def solve_batch(
         _record(members, pressure, iterations)
 
 
-def sunk(
-    softness: Array, drop: Array, power: Array, flow: Array, yielding: float, pressure: Array, xp: Any
-) -> Array:
-    """By how much cells at edges sink under a pressure, Pa; m."""
-    alone = softness * pressure + yielding * xp.maximum(pressure - flow, 0.0)
+def sunk(at_edges: Sequence[Array], pressure: Array, xp: Any) -> Array:
+    """By how much cells at edges, of `contact.edges.Softness`, sink under a pressure, Pa; m."""
+    _, drop, power, *_ = at_edges
+    alone = _alone(at_edges, pressure, xp)
     return alone * (1.0 + (alone / drop) ** power) ** (-1.0 / power)
 
 
-def compliance(
-    softness: Array, drop: Array, power: Array, flow: Array, yielding: float, pressure: Array, xp: Any
-) -> Array:
-    """Derivative of `sunk` by the pressure, m/Pa."""
-    alone = softness * pressure + yielding * xp.maximum(pressure - flow, 0.0)
-    giving = softness + yielding * (pressure > flow)
+def compliance(at_edges: Sequence[Array], pressure: Array, xp: Any) -> Array:
+    """Derivative of `sunk` by the pressure, m/Pa; where cells begin to flow it is bounded."""
+    softness, drop, power, flow, flowing, yielding = at_edges
+    alone = _alone(at_edges, pressure, xp)
+    ratio = pressure / flow
+    rise = 8.0 / 3.0 * ratio**3 / xp.maximum(1.0 - ratio**4, SHARPEST) ** (1.0 / 3.0)
+    giving = softness + xp.where(ratio < 1.0, flowing / flow * rise, yielding)
     return giving * (1.0 + (alone / drop) ** power) ** (-1.0 / power - 1.0)
+
+
+def _alone(at_edges: Sequence[Array], pressure: Array, xp: Any) -> Array:
+    """By how much the sound parts of cells at edges would sink alone, m."""
+    softness, _, _, flow, flowing, yielding = at_edges
+    left = (1.0 - xp.minimum(pressure / flow, 1.0) ** 4) ** (2.0 / 3.0)
+    return softness * pressure + flowing * (1.0 - left) + yielding * xp.maximum(pressure - flow, 0.0)
 
 
 def _record(members: _Members, pressure: Array, iterations: Array) -> None:
@@ -230,10 +234,10 @@ def _iterate(m: _Members, task: BatchTask, xp: Any) -> _Members:
         return step, _dot(m.residual, step), (kept != wanted).any(axis=(1, 2))
 
     free = ((m.pressure > 0.0) | (m.residual < 0.0)) & ((m.pressure < hardness) | (m.residual > 0.0))
-    at_edges = m.softness, m.drop, m.power, m.flow, task.yielding
+    at_edges = m.softness, m.drop, m.power, m.flow, m.flowing, m.yielding
     if m.softness is not None:
-        before = sunk(*at_edges, m.pressure, xp)
-        free = free / xp.sqrt(1.0 + task.taps[0] * compliance(*at_edges, m.pressure, xp))
+        before = sunk(at_edges, m.pressure, xp)
+        free = free / xp.sqrt(1.0 + task.taps[0] * compliance(at_edges, m.pressure, xp))
     z = apply_stencil(m.residual * free, task.taps, xp) * free
     rho = _dot(m.residual, z)
     known = m.rho > 0.0
@@ -251,7 +255,7 @@ def _iterate(m: _Members, task: BatchTask, xp: Any) -> _Members:
         step, work, clipped = project(direction, xp.where(steepest, 1.0 / task.softest, m.length))
     response = convolve_padded(step, task.spectrum, xp)
     if m.softness is not None:
-        sinks = sunk(*at_edges, m.pressure + step, xp) - before
+        sinks = sunk(at_edges, m.pressure + step, xp) - before
         response += sinks
     curvature = _dot(step, response)
     moving = m.active & (work < 0.0) & (curvature > 0.0)
@@ -264,7 +268,7 @@ def _iterate(m: _Members, task: BatchTask, xp: Any) -> _Members:
     pressure = xp.clip(m.pressure + share * step, 0.0, hardness)
     residual = m.residual + share * response
     if m.softness is not None:  # no straight line once what lies deeper carries, too
-        residual += sunk(*at_edges, pressure, xp) - before - share * sinks
+        residual += sunk(at_edges, pressure, xp) - before - share * sinks
     unmet = _complementarity(pressure, residual, hardness, xp) > m.tolerance
     return m._replace(
         pressure=pressure, residual=residual, previous=m.residual, direction=direction,

@@ -5,9 +5,10 @@ A cell then sinks by its softness times its pressure more than a cell among othe
 deeper carries, too: to its drop at most, the mean depth below the sound surface, where all of it carries. It
 comes there the more sharply the larger a power is, by s = x/(1 + (x/drop)^power)^(1/power) with x what the
 sound part alone would sink by.
-Where surfaces flow at a hardness, the sound part of the cell does so at its share of that: from there on the
-cell yields some tens of times as much as others. What such cells sink grows with their pressure, so that the
-energy stays convex, and its least stays the solution.
+Where surfaces flow at a hardness, the sound part of the cell does so at a pressure of its own. Until then it
+sinks more by F φ(q), φ = 1 − (1 − q⁴)^(2/3), q the pressure over that, and from there on it yields some tens
+of times as much as others. What such cells sink grows with their pressure, so that the energy stays convex,
+and its least stays the solution.
 """
 
 from typing import NamedTuple
@@ -18,6 +19,9 @@ from numpy.typing import DTypeLike, NDArray
 from asperity.kernels.box import FAR, Box
 from asperity.kernels.options import CALLED, INNER, compiled
 
+SHARPEST = 1e-3
+"""What is left of 1 − q⁴ where the derivative of φ is largest: at zero it has no bound."""
+
 
 class SoftCells(NamedTuple):
     """Softness of the cells of a block, and those of a box that have any, one after the other."""
@@ -26,7 +30,8 @@ class SoftCells(NamedTuple):
     drop: NDArray  # likewise, the most by which a cell sinks, m; above zero where there is a softness
     power: NDArray  # likewise, with which it comes to that
     flow: NDArray  # likewise, pressure at which its sound part flows, Pa
-    yielding: float  # by how much more a cell sinks beyond that, m/Pa
+    flowing: NDArray  # likewise, what it sinks more until all of it does, m
+    yielding: NDArray  # likewise, and beyond that, m/Pa
     row: NDArray  # (1,), row of these at which the window begins
     number: NDArray  # (1,), number of cells listed
     cell: NDArray  # their places in the box
@@ -34,28 +39,45 @@ class SoftCells(NamedTuple):
     most: NDArray  # m
     powers: NDArray
     flows: NDArray  # Pa
+    more: NDArray  # m
+    yields: NDArray  # m/Pa
     sunk: NDArray  # by how much a cell has sunk, m, which is on the residual
     step: NDArray  # and what the last step added, m
     weight: NDArray  # of the cell where steps are preconditioned
 
 
-def soft_cells(
-    soft: tuple[NDArray, NDArray, NDArray, NDArray, float] | None, count: int, dtype: DTypeLike
-) -> SoftCells:
+def soft_cells(soft: tuple[NDArray, ...] | None, count: int, dtype: DTypeLike) -> SoftCells:
     """Make room for the edges of a block in a window of so many cells."""
     room = 0 if soft is None else count
     none = np.zeros((0, 0))
-    softness, drop, power, flow, yielding = (none, none, none, none, 0.0) if soft is None else soft
+    softness, drop, power, flow, flowing, yielding = 6 * (none,) if soft is None else soft
     row, number = np.zeros((2, 1), dtype=np.int64)
     places: NDArray = np.zeros(room, dtype=np.int64)
-    fields: NDArray = np.zeros((7, room), dtype=dtype)
-    return SoftCells(softness, drop, power, flow, yielding, row, number, places, *fields)
+    fields: NDArray = np.zeros((9, room), dtype=dtype)
+    return SoftCells(softness, drop, power, flow, flowing, yielding, row, number, places, *fields)
 
 
 @compiled(**INNER)
 def by_itself(edges: SoftCells, k: int, pressure: float) -> float:
     """By how much the sound part of a cell at an edge would sink under a pressure, Pa, alone; m."""
-    return edges.soft[k] * pressure + edges.yielding * max(pressure - edges.flows[k], 0.0)
+    alone = edges.soft[k] * pressure
+    if edges.more[k] > 0.0:
+        flow = edges.flows[k]
+        left = np.cbrt(1.0 - min(pressure / flow, 1.0) ** 4)
+        alone += edges.more[k] * (1.0 - left * left) + edges.yields[k] * max(pressure - flow, 0.0)
+    return alone
+
+
+@compiled(**INNER)
+def _gives(edges: SoftCells, k: int, pressure: float) -> float:
+    """Derivative of `by_itself` by the pressure, m/Pa; where the cell begins to flow it is bounded."""
+    if edges.more[k] == 0.0:
+        return edges.soft[k]
+    ratio = pressure / edges.flows[k]
+    if ratio >= 1.0:
+        return edges.soft[k] + edges.yields[k]
+    rise = 8.0 / 3.0 * ratio**3 / np.cbrt(max(1.0 - ratio**4, SHARPEST))
+    return edges.soft[k] + edges.more[k] / edges.flows[k] * rise
 
 
 @compiled(**INNER)
@@ -87,9 +109,11 @@ def find_edges(b: Box, edges: SoftCells, first: int, left: int) -> float:
                     edges.soft[found], edges.most[found] = soft, edges.drop[row, left + j]
                     edges.powers[found] = edges.power[row, left + j]
                     edges.flows[found] = min(edges.flow[row, left + j], FAR)
+                    edges.more[found] = edges.flowing[row, left + j]
+                    edges.yields[found] = edges.yielding[row, left + j]
                     edges.sunk[found] = sunk_by(edges, found, b.pressure[i * b.pitch + j])
+                    softest = max(softest, soft + edges.yields[found])
                     found += 1
-                    softest = max(softest, soft + edges.yielding)
     edges.number[0] = found
     return softest
 
@@ -128,9 +152,9 @@ def weigh_edges(b: Box, edges: SoftCells, stiffness: float) -> None:
     for k in range(edges.number[0]):
         softer, pressure = edges.soft[k], b.pressure[edges.cell[k]]
         if pressure > 0.0:
-            softer += edges.yielding if pressure > edges.flows[k] else 0.0
             alone = by_itself(edges, k, pressure)
-            softer *= edges.sunk[k] / alone / (1.0 + (alone / edges.most[k]) ** edges.powers[k])
+            softer = _gives(edges, k, pressure) * edges.sunk[k] / alone
+            softer /= 1.0 + (alone / edges.most[k]) ** edges.powers[k]
         edges.weight[k] = 1.0 / np.sqrt(1.0 + softer * stiffness)
 
 

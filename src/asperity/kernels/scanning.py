@@ -93,7 +93,7 @@ def room(
     nx: int,
     ny: int,
     sides: tuple[float, float] | None = None,
-    soft: tuple[NDArray, NDArray, NDArray, NDArray, float] | None = None,
+    soft: tuple[NDArray, ...] | None = None,
 ) -> Room:
     """Make room for solutions on a grid of nx × ny cells, with sides over E*, m/Pa, if covered in part.
 
