@@ -32,6 +32,8 @@ MOTIONS = {
     "all pivots": [(0.0, 0.0, 2e-2)],
 }
 """Creepages, and spin times the mean semi-axis."""
+TURNS = (0.8, -0.6, 0.7, -0.2)
+"""Friction between which a shift turns back, over the most there is."""
 SETTLING = 150
 
 
@@ -72,6 +74,28 @@ def shifted(across, cells):
     return np.abs(errors).max(axis=0)
 
 
+def turned_back(across, cells):
+    """Largest error of the shift of a ball under friction that turns back, over that at which all slips.
+
+    By twice the first curve of half of the force, from turn to turn (Mindlin and Deresiewicz).
+    """
+    errors = []
+    for offset in OFFSETS:
+        normal, solver, (a, _), _ = contact(across, 1.0, 0.0, offset, cells)
+        full = 3.0 * FRICTION * LOAD / (4.0 * SHEAR * a)
+        state, at, start, place = None, 0.0, 0.0, 0.0
+        for turns, corner in enumerate(TURNS):
+            times = 2.0 if turns else 1.0
+            for force in np.linspace(at, corner, 4)[1:]:
+                state = solver.shift(normal, force=(-force * FRICTION * LOAD, None), before=state)
+                place += state.creepage[0]
+                grown = times * full * (1.0 - (1.0 - abs(force - at) / times) ** (2 / 3))
+                grown = math.copysign(grown, force - at)
+                errors.append((place - start - grown) / full)
+            at, start = corner, start + grown
+    return np.abs(errors).max()
+
+
 def rolled(across, ratio, motion, offset, cells):
     """Forces over friction, and the moment over that and the mean semi-axis, about the middle."""
     normal, solver, axes, (x, y) = contact(across, ratio, 0.3, offset, cells)
@@ -90,6 +114,8 @@ def errors():
     found = np.array([shifted(*each) for each in columns])
     for name, values in zip(("shift of a ball", "its stick area"), found.T, strict=True):
         print(f"| {name} |", " | ".join(f"{100.0 * each:.2f}" for each in values), "|")
+    turned = [turned_back(*each) for each in columns]
+    print("| shift of a ball that turns back |", " | ".join(f"{100.0 * each:.2f}" for each in turned), "|")
     for name, motions in MOTIONS.items():
         largest = np.zeros(len(columns))
         for ratio in RATIOS:

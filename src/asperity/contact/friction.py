@@ -1,5 +1,6 @@
 """Coulomb's law, and what is known of a contact with friction once it is solved."""
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -7,8 +8,12 @@ import numpy as np
 from asperity.arguments import Array, ArrayLike, Flags, finite_array, real
 from asperity.contact.elastic_grid import ElasticGrid
 from asperity.contact.solved import Contact
-from asperity.errors import Outcome
+from asperity.errors import Outcome, percent
 from asperity.kernels.rims import cells_covered
+from asperity.written_numbers import rounded
+
+PIVOTING = 0.99
+"""Share of slip from which on spin may say more than creepage."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,6 +106,8 @@ class SlidingContact:
         χ, by which the creepage along is less at y across, over y², 1/m².
     distance : float
         Rolled distance over which slip is counted, m; zero for a shift.
+    left : ndarray, shape (2, nx, ny), optional
+        What rims leave in cells, m, once shifts on covered cells have turned: see `contact.traction_rims`.
 
     Notes
     -----
@@ -140,6 +147,7 @@ class SlidingContact:
     outcome: Outcome
     creepage_curvature: float = 0.0
     distance: float = 0.0
+    left: Array | None = field(default=None, repr=False)
 
     @property
     def converged(self) -> bool:
@@ -208,3 +216,27 @@ def cell_places(space: ElasticGrid) -> tuple[Array, Array]:
         d * (np.arange(float(n)) - 0.5 * (n - 1)) for n, d in zip(space.shape, space.spacing, strict=True)
     )
     return x[:, None], y[None, :]
+
+
+def doubts(found: SlidingContact, largest: float) -> list[str]:
+    """What makes a solution doubtful, in words: a creepage beyond the largest that is small, a pivot."""
+    words = []
+    creepage = math.hypot(*found.creepage[:2])
+    slips = found.slip_area
+    area = found.normal.area
+    slipping = percent(slips / area) if area else "nothing"
+    if creepage > largest:
+        words.append(
+            f"A creepage of {rounded(creepage)} is above {largest:g}: strains and paths are those of small "
+            f"creepages, and {slipping} of the contact slips. Lower it."
+        )
+    xi, eta, spin = found.creepage
+    if spin and slips > PIVOTING * area:
+        x, y = cell_places(found.normal.half_space)
+        away = np.hypot(x + eta / spin, y - xi / spin)[found.normal.pressure > 0.0]
+        if away.min(initial=math.inf) < math.hypot(*found.normal.half_space.spacing):
+            words.append(
+                f"A spin of {rounded(spin)} /m makes the contact pivot on a place inside of it: "
+                f"{slipping} of it slips, and the force says little of the creepage. Lower the spin."
+            )
+    return words

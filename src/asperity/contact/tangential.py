@@ -9,13 +9,22 @@ import numpy as np
 
 from asperity import arguments
 from asperity.arguments import Array, ArrayLike, Complex, NDArray, real, require
-from asperity.contact.friction import Friction, SlidingContact, cell_places
+from asperity.contact.friction import Friction, SlidingContact, cell_places, doubts
 from asperity.contact.friction_work import with_work
 from asperity.contact.halfspace import HalfSpace
 from asperity.contact.periodic import refuse_period
 from asperity.contact.pressed import at_load
 from asperity.contact.solved import Contact
-from asperity.contact.traction_rims import free_slip, left_ahead, left_by, rows_ahead, slip_ahead
+from asperity.contact.traction_rims import (
+    Turn,
+    free_slip,
+    left_ahead,
+    left_by,
+    rows_ahead,
+    slip_ahead,
+    stored_energy,
+    turn_at,
+)
 from asperity.errors import ComputationError, Outcome, OutOfRangeWarning, UnconvergedWarning, percent
 from asperity.kernels import traction as kernel
 from asperity.kernels.fourier import smooth_length
@@ -49,8 +58,6 @@ SPIN_AHEAD = 1.0 / 6.0
 """Share of the rolled distance by which spin is counted ahead of a cell, as the program CONTACT does."""
 SPIN_ON_MEANS = 0.5
 """On covered cells, the mean of the way: what slips on counts at its end, see `kernels.traction_rims`."""
-PIVOTING = 0.99
-"""Share of slip from which on spin may say more than creepage."""
 Forces = tuple[float | None, float | None]
 
 
@@ -362,37 +369,13 @@ class FrictionalHalfSpace:
             warnings.warn(words, UnconvergedWarning, stacklevel=3)
         self._doubt(found, manner)
         if self._covers and manner.ahead:
-            found = replace(found, elastic_energy=self._stored(found))
+            stored = stored_energy(found, self.displacement, self._sides, self.poisson_ratio)
+            found = replace(found, elastic_energy=stored)
         return with_work(found, manner.before, manner.ahead, self.displacement, self._couples)
-
-    def _stored(self, found: SlidingContact) -> float:
-        """Elastic energy of tractions on covered cells, J."""
-        traction = found.traction[0] + 1j * found.traction[1]
-        moved = self.displacement(traction, np.zeros(self.half_space.shape))
-        moved += left_by(found.bound, traction, self._sides, self.poisson_ratio, rolls=True)
-        return 0.5 * float((traction.conj() * moved).real.sum()) * self.half_space.cell_area
 
     def _doubt(self, found: SlidingContact, manner: _Manner) -> None:
         """Warn of what is outside the range of the theory."""
-        xi, eta, spin = found.creepage
-        words = []
-        creepage = math.hypot(*found.creepage[:2])
-        slips = found.slip_area
-        area = found.normal.area
-        slipping = percent(slips / area) if area else "nothing"
-        if manner.ahead and creepage > LARGE_CREEPAGE:
-            words.append(
-                f"A creepage of {rounded(creepage)} is above {LARGE_CREEPAGE:g}: strains and paths are "
-                f"those of small creepages, and {slipping} of the contact slips. Lower it."
-            )
-        if spin and slips > PIVOTING * area:
-            x, y = cell_places(self.half_space)
-            away = np.hypot(x + eta / spin, y - xi / spin)[found.normal.pressure > 0.0]
-            if away.min(initial=math.inf) < math.hypot(*self.half_space.spacing):
-                words.append(
-                    f"A spin of {rounded(spin)} /m makes the contact pivot on a place inside of it: "
-                    f"{slipping} of it slips, and the force says little of the creepage. Lower the spin."
-                )
+        words = doubts(found, LARGE_CREEPAGE if manner.ahead else math.inf)
         if self.unlikeness and not self.coupled:
             neglected = abs(self.unlikeness) * self.shear_modulus / (1.0 - self.poisson_ratio)
             words.append(
@@ -473,11 +456,7 @@ class FrictionalHalfSpace:
         loaded = normal
         bound = self.friction.coefficient(velocity, slipped) * normal.pressure
         for _ in range(MAX_ROUNDS):
-            kept = past
-            if self._covers and before is not None and not manner.ahead:
-                # what sticks as the load changes keeps what is left: by the bound that there is now
-                kept = past + left_by(bound, traction, self._sides, self.poisson_ratio)
-            found = self._solve(loaded, bound, kept, behind, motion, manner)
+            found = self._solve(loaded, bound, past, behind, motion, manner)
             counts += found.iterations, found.convolutions
             if not (self.friction.falls or self._couples):
                 break
@@ -504,6 +483,19 @@ class FrictionalHalfSpace:
             return 0
         return rows_ahead(manner.ahead, self.half_space.spacing[0], manner.steady)
 
+    def _kept(
+        self, past: Complex, bound: Array, motion: tuple[float, ...], manner: _Manner
+    ) -> tuple[Complex, Turn | None]:
+        """Displacement before, m, with what rims leave of it in cells that stick; and where a shift turns."""
+        before = manner.before
+        if before is None or manner.ahead or not self._covers:
+            return past, None
+        turn = turn_at(before, motion, bound, self._sides, self.poisson_ratio)
+        if turn is None:  # as loads change it stays: by the bound that there is now
+            traction = before.traction[0] + 1j * before.traction[1]
+            past = past + left_by(bound, traction, self._sides, self.poisson_ratio)
+        return past, turn
+
     def _rims(
         self, normal: Contact, box: kernel.TractionBox, inside: tuple[slice, slice], manner: _Manner
     ) -> TractionRims:
@@ -519,6 +511,7 @@ class FrictionalHalfSpace:
             _cells(beyond, box)[:] = softness[inside]
         ahead = box.pitch if steady else 0
         rims = traction_rims(self._sides, self.poisson_ratio, box.pitch, ahead, enters, beyond)
+        rims.room[:] = box.bound
         if rows and manner.before:
             _cells(rims.earlier, box)[:] = manner.ahead * slip_ahead(manner.before, rows)[inside]
         return rims
@@ -537,6 +530,7 @@ class FrictionalHalfSpace:
         xi, eta, spin = motion
         ahead, steady = manner.kernel
         _, spread, own = self._influence(ahead, steady)
+        past, turn = self._kept(past, bound, motion, manner)
         rigid = manner.step * complex(xi, eta) - past
         if spin:
             share = SPIN_ON_MEANS if self._covers else SPIN_AHEAD
@@ -563,6 +557,10 @@ class FrictionalHalfSpace:
         if self._covers:
             rims = self._rims(normal, box, inside, manner)
             _cells(rims.behind, box)[:] = behind[inside]
+            if turn:
+                _cells(rims.origin, box)[:] = turn.traction[inside]
+                _cells(rims.room, box)[:] = turn.room[inside]
+                _cells(rims.way, box)[:] = turn.way[inside]
         task = kernel.TractionTask(own, carried, not steady, manner.rtol, MAX_ITERATIONS)
         iterations, convolutions, worst = kernel.solve_traction(box, linear, rims, task)
         outcome = Outcome.CONVERGED if worst <= manner.rtol else Outcome.ITERATION_LIMIT
@@ -571,15 +569,17 @@ class FrictionalHalfSpace:
         s = _cells(box.slip, box) / manner.step
         fields[:, *inside] = p.real, p.imag, s.real, s.imag, _cells(box.normal, box) == 0.0
         sticks = (fields[4] > 0.0) & (bound > 0.0)
-        stored = (
-            math.nan
-        )  # in steady rolling what tractions displace here less that ahead tells nothing of it
+        stored = math.nan  # in steady rolling what displaces here less that ahead tells nothing of it
+        left = None
         if not steady:
-            displaced = box.traction.conj() * (box.slip - box.rigid)
-            stored = 0.5 * float(displaced.real.sum()) * self.half_space.cell_area
+            displaced = box.slip - box.rigid
+            if rims and turn:
+                _cells(displaced, box)[:] += turn.left[inside]
+                left = turn.to(_cells(rims.left, box), inside)
+            stored = 0.5 * float((box.traction.conj() * displaced).real.sum()) * self.half_space.cell_area
         return SlidingContact(
             normal, fields[:2], fields[2:4] * contact, sticks, bound, (xi, eta, spin), manner.speed,
-            math.nan, stored, iterations, convolutions, worst, outcome, manner.curvature, manner.ahead,
+            math.nan, stored, iterations, convolutions, worst, outcome, manner.curvature, manner.ahead, left,
         )  # fmt: skip
 
 

@@ -1,12 +1,18 @@
 """Contacts with friction on cells that are covered in part: what their rims leave, from step to step."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from asperity.arguments import Array, Complex, Flags, require
-from asperity.contact.friction import SlidingContact
+from asperity.contact.friction import SlidingContact, cell_places
+from asperity.contact.friction_work import Displacement
 from asperity.contact.solved import Contact
 from asperity.kernels.traction_rims import find_left, set_bound, traction_rims
 from asperity.written_numbers import rounded
+
+NO_ROOM = 1e-6
+"""Of tractions to the bound, over that, which rounding may leave of none."""
 
 
 def rows_ahead(distance: float, side: float, steady: bool) -> int:
@@ -79,6 +85,69 @@ def left_by(
     return _left_in(bound, traction, enters, sides, poisson)[0]
 
 
+def stored_energy(
+    found: SlidingContact, displacement: Displacement, sides: tuple[float, float], poisson: float
+) -> float:
+    """Elastic energy of tractions that roll, J; sides as in `left_ahead`."""
+    traction = found.traction[0] + 1j * found.traction[1]
+    moved = displacement(traction, np.zeros(found.bound.shape), 0.0)
+    moved += left_by(found.bound, traction, sides, poisson, rolls=True)
+    return 0.5 * float((traction.conj() * moved).real.sum()) * found.normal.half_space.cell_area
+
+
+@dataclass(frozen=True)
+class Turn:
+    """A state from which tractions turn back, or have before: rims of the slip until then stay.
+
+    While tractions grow one way, the bound and what is missing of it tell all that their rims leave. Where
+    they turn, what changes is as a shift of its own from there, within the room to the bound (R. D. Mindlin
+    and H. Deresiewicz, 1953).
+    """
+
+    traction: Complex  # (nx, ny), x + iy, Pa
+    left: Complex  # what rims leave in it, m
+    room: Array  # from there to the bound, the way tractions change, Pa
+    way: Complex  # direction of that where there is no room, else zero
+
+    def to(self, more: Complex, inside: tuple[slice, slice]) -> Array:
+        """What rims leave where more has come in a part of the grid (2, nx, ny), m."""
+        left = self.left.copy()
+        left[inside] += more
+        return np.stack([left.real, left.imag])
+
+
+def turn_at(
+    before: SlidingContact,
+    motion: tuple[float, ...],
+    bound: Array,
+    sides: tuple[float, float],
+    poisson: float,
+) -> Turn | None:
+    """Where a shift turns back from a state, or goes on from one that has; None if it does neither.
+
+    Motion and bound (nx, ny), Pa, are those of the shift; sides as in `left_ahead`.
+    """
+    traction = before.traction[0] + 1j * before.traction[1]
+    xi, eta, spin = motion
+    x, y = cell_places(before.normal.half_space)
+    change = -complex(xi, eta) - spin * (1j * x - y)
+    if not np.any(change):  # a bound that falls lowers them
+        change = -traction
+    size = np.abs(change)
+    way = change / np.where(size > 0.0, size, 1.0)
+    along = (traction * way.conj()).real
+    if before.left is not None:
+        left = before.left[0] + 1j * before.left[1]
+    elif float(along.sum()) < 0.0:
+        left = left_by(before.bound, traction, sides, poisson)
+    else:
+        return None
+    square = along**2 + bound**2 - np.abs(traction) ** 2
+    room = np.maximum(np.sqrt(np.maximum(square, 0.0)) - along, 0.0)
+    none = (bound > 0.0) & (room <= NO_ROOM * bound)
+    return Turn(traction, left, np.where(bound > 0.0, np.maximum(room, NO_ROOM * bound), 0.0), way * none)
+
+
 def _ahead(field: Complex, rows: int) -> Complex:
     """A field so many rows ahead of a cell, zero beyond the grid."""
     found = np.zeros_like(field)
@@ -101,8 +170,9 @@ def _left_in(
     idle = ((0, 0), (0, 1))  # a cell between the rows
     flat_bound, flat_traction, entering = (np.pad(each, idle).ravel() for each in (bound, traction, enters))
     rims = traction_rims(sides, poisson, ny + 1, 0, entering, np.zeros(len(entering)))
-    set_bound(rims, flat_bound)
-    find_left(rims, flat_bound, flat_traction)
+    rims.room[:] = flat_bound
+    set_bound(rims)
+    find_left(rims, flat_traction)
     left, outer, normal = (
         each.reshape(nx, ny + 1)[:, :ny].copy() for each in (rims.left, rims.bound_left, rims.bound_normal)
     )

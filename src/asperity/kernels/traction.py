@@ -342,7 +342,7 @@ def _linearise(
 ) -> None:
     """Set residual, slope and weight at the traction."""
     unit = 1.0 / norm
-    set_giving(rims, b.bound, b.traction, b.slip, b.normal, diagonal)
+    set_giving(rims, b.slip, b.normal, diagonal)
     for q in range(len(b.bound)):
         n = b.normal[q]
         left = 0.0j
@@ -484,7 +484,7 @@ def _twice_energy(b: TractionBox, rims: TractionRims | None) -> float:
     """
     convolve_traction(b.convolution, b.trial, b.nx, b.ny, b.pitch, b.work, b.response)
     _add(b.response, 1.0, b.rigid)
-    add_left(rims, b.bound, b.trial, b.response)
+    add_left(rims, b.trial, b.response)
     return _product(b.trial, b.response) + _product(b.trial, b.rigid)
 
 
@@ -533,7 +533,7 @@ def solve_traction(
         largest = max(largest, square)
     last = np.sqrt(last)
     largest = np.sqrt(largest)
-    set_bound(rims, b.bound)
+    set_bound(rims)
     energy = _twice_energy(b, rims)
     _adopt(b)
     worst, norm = _judge(b, linear, rims)

@@ -12,6 +12,9 @@ is added to the displacement by tractions on cells: a body gives way along a rim
 and 1/(1 − ν) times as much aside. Cells that stick have no slip then, as those of a normal contact no gap.
 
 In steady rolling the slip of a cell is that of its material since it was a cell ahead, Ψ less Ψ ahead.
+Where a shift turns back, rims of the slip before stay. What changes from there is as a traction of its own,
+whose bound is the room that it has: `room` and `change` stand for g and q, and Ψ for its growth.
+
 Material that rolls in from beyond the contact slips freely until then. Near a leading edge tractions are in
 proportion to pressures, and what they displace to the gap beyond, so that Ψ is −L(g) q/g there, and the free
 slip counts against the traction. What slips on is opposite to its traction at the end of a step, half a cell
@@ -51,10 +54,14 @@ class TractionRims(NamedTuple):
     beyond: NDArray  # (size,), its free slip over the traction, m/Pa
     behind: NDArray  # (size,), slip over traction of a cell behind one that entered in the step before, m/Pa
     earlier: NDArray  # (size,), slip of the material in the step before, where it slipped, x + iy, m
-    missing: NDArray  # (size, and a row on both sides,), what is missing of the bound, Pa
-    bound_left: NDArray  # (size,), w S R/G of the bound, m
+    origin: NDArray  # (size,), tractions from which they change, of which rims are known, x + iy, Pa
+    change: NDArray  # (size,), tractions less these, Pa
+    room: NDArray  # (size,), from there to the bound, along the way that they change, Pa
+    way: NDArray  # (size,), direction of that where there is no room, else zero
+    missing: NDArray  # (size, and a row on both sides,), what is missing of that, Pa
+    bound_left: NDArray  # (size,), w S R/G of the room, m
     bound_normal: NDArray  # (size,), normal of its rims, x + iy
-    slopes: NDArray  # (3, size), of w S R/G of the bound: by itself, and differences beside it, m/Pa
+    slopes: NDArray  # (3, size), of w S R/G of the room: by itself, and differences beside it, m/Pa
     left: NDArray  # (size,), Ψ, x + iy, m
     fall: NDArray  # (size,), by how much that falls with the root of what is missing, m/√Pa
     # how much more than others cells give way, over their own displacement: as the traction turns, along it
@@ -71,11 +78,11 @@ def traction_rims(
     """Make room for the rims of a box whose rows have a pitch; sides over G, m/Pa."""
     size = len(enters)
     missing = np.zeros(size + 2 * pitch)
-    bound_left, fall, *slopes = np.zeros((5, size))
-    bound_normal, left, earlier = np.zeros((3, size), complex)
+    room, bound_left, fall, *slopes = np.zeros((6, size))
+    bound_normal, left, earlier, origin, change, way = np.zeros((6, size), complex)
     giving = np.zeros((3, size), np.float32)
-    known = (*sides, poisson, pitch, ahead, enters, beyond, np.zeros(size), earlier)
-    of_bound = (missing, bound_left, bound_normal, np.array(slopes))
+    known = (*sides, poisson, pitch, ahead, enters, beyond, np.zeros(size), earlier, origin, change)
+    of_bound = (room, way, missing, bound_left, bound_normal, np.array(slopes))
     return TractionRims._make((*known, *of_bound, left, fall, *giving, np.zeros(size, np.complex64)))
 
 
@@ -108,9 +115,10 @@ def _rim_at(rims: TractionRims, q: int) -> tuple[float, float, complex]:
 
 
 @compiled(**LOOP)
-def set_bound(rims: TractionRims | None, bound: NDArray) -> None:
-    """Find what rims of the bound itself leave, which is known before any traction."""
+def set_bound(rims: TractionRims | None) -> None:
+    """Find what rims of the room leave, which is known before any change of the tractions."""
     if rims is not None:
+        bound = rims.room
         elongation = (rims.along / rims.across) ** 2
         for q in range(len(bound)):
             rims.missing[q + rims.pitch] = bound[q]
@@ -144,7 +152,7 @@ def _left_by_large(rims: TractionRims, bound: NDArray, traction: NDArray, q: int
     turn by what it leaves itself.
     """
     size = abs(traction[q])
-    toward = traction[q] / size
+    toward = traction[q] / size if size > 0.0 else rims.way[q]
     left, fall, normal = _rim_at(rims, q)
     rims.fall[q] = fall * (1.0 - rims.poisson * (toward * normal.conjugate()).real ** 2)
     outer = rims.bound_left[q]
@@ -173,15 +181,20 @@ def _left_by_small(rims: TractionRims, traction: NDArray, q: int) -> complex:
 
 
 @compiled(**INNER)
-def _largeness(bound: NDArray, traction: NDArray, q: int) -> float:
+def _largeness(rims: TractionRims, bound: NDArray, traction: NDArray, q: int) -> float:
     """Share in which a traction counts as large, from 0 to 1."""
+    if rims.way[q] != 0.0:
+        return 1.0
     size = min(abs(traction[q]) / (SMALL * bound[q]), 1.0)
     return size * size * (3.0 - 2.0 * size)
 
 
 @compiled(**LOOP)
-def find_left(rims: TractionRims, bound: NDArray, traction: NDArray) -> None:
-    """Find what is left in cells under a traction."""
+def find_left(rims: TractionRims, tractions: NDArray) -> None:
+    """Find what is left in cells under tractions, beyond what is where they change from."""
+    bound, traction = rims.room, rims.change
+    for q in range(len(bound)):
+        traction[q] = tractions[q] - rims.origin[q]
     for q in range(len(bound)):
         rims.missing[q + rims.pitch] = max(bound[q] - abs(traction[q]), 0.0)
     for q in range(len(bound)):
@@ -191,7 +204,7 @@ def find_left(rims: TractionRims, bound: NDArray, traction: NDArray) -> None:
             share = rims.bound_left[q] / bound[q]
             rims.left[q] = -share * _turned(rims, traction[q], rims.bound_normal[q])
         elif bound[q] > 0.0:
-            large = _largeness(bound, traction, q)
+            large = _largeness(rims, bound, traction, q)
             if large > 0.0:
                 rims.left[q] = large * _left_by_large(rims, bound, traction, q)
             if large < 1.0 and rims.bound_normal[q] != 0.0:
@@ -212,16 +225,16 @@ def _left_ahead(rims: TractionRims, bound: NDArray, traction: NDArray, q: int) -
 
 
 @compiled(**CALLED)
-def add_left(rims: TractionRims | None, bound: NDArray, traction: NDArray, slip: NDArray) -> None:
+def add_left(rims: TractionRims | None, traction: NDArray, slip: NDArray) -> None:
     """Add what is left under a traction to a slip on whole cells: in steady rolling less that ahead."""
     if rims is not None:
-        find_left(rims, bound, traction)
-        for q in range(len(bound)):
+        find_left(rims, traction)
+        for q in range(len(traction)):
             slip[q] += rims.left[q] + rims.behind[q] * traction[q]
             if rims.enters[q]:
                 slip[q] += rims.beyond[q] * _turned(rims, traction[q], rims.bound_normal[q])
-            if rims.ahead > 0 and q + rims.ahead < len(bound):
-                slip[q] -= _left_ahead(rims, bound, traction, q + rims.ahead)
+            if rims.ahead > 0 and q + rims.ahead < len(traction):
+                slip[q] -= _left_ahead(rims, rims.room, traction, q + rims.ahead)
 
 
 @compiled(**INNER)
@@ -245,10 +258,10 @@ def _set_giving_of(
     rims: TractionRims, bound: NDArray, traction: NDArray, q: int, sticks: bool, unmet: float, diagonal: float
 ) -> None:
     """Find how much more than a whole one a cell gives way, whose slip along its traction is unmet, m."""
-    large = _largeness(bound, traction, q)
+    large = _largeness(rims, bound, traction, q)
     small = max(-rims.slopes[0, q], 0.0)
     turning = small
-    if large == 1.0:
+    if large == 1.0 and traction[q] != 0.0:
         turning = max((rims.left[q] * traction[q].conjugate()).real / abs(traction[q]) ** 2, 0.0)
     rims.turning[q] = turning / diagonal
     if sticks:
@@ -257,16 +270,10 @@ def _set_giving_of(
 
 
 @compiled(**CALLED)
-def set_giving(
-    rims: TractionRims | None,
-    bound: NDArray,
-    traction: NDArray,
-    slip: NDArray,
-    normal: NDArray,
-    diagonal: float,
-) -> None:
+def set_giving(rims: TractionRims | None, slip: NDArray, normal: NDArray, diagonal: float) -> None:
     """Find how much more cells give way than whole ones do, of which each does by its diagonal, m/Pa."""
     if rims is not None:
+        bound, traction = rims.room, rims.change
         for q in range(len(bound)):
             rims.turning[q] = rims.steep[q] = rims.entry[q] = 0.0
             rims.toward[q] = 0.0j
@@ -277,7 +284,7 @@ def set_giving(
                 if rims.ahead > 0 and behind >= 0:
                     rims.entry[q] = rims.bound_left[q] / ((bound[q] + bound[behind]) * diagonal)
             elif bound[q] > 0.0:
-                toward = traction[q] / size if size > 0.0 else 0.0j
+                toward = traction[q] / size if size > 0.0 else rims.way[q]
                 rims.toward[q] = toward
                 unmet = (slip[q] * toward.conjugate()).real
                 _set_giving_of(rims, bound, traction, q, normal[q] == 0.0, unmet, diagonal)
