@@ -14,6 +14,11 @@ from asperity.cli import main
 from asperity.contact.batched import choose_device, find_device, gpu, processor
 from asperity.contact.scan import ScanJob, scan_forces
 from asperity.errors import ComputationError, InputError
+from asperity.kernels import batched
+from asperity.kernels.box import box_room, empty_box
+from asperity.kernels.lanes import aligned, width
+from asperity.kernels.options import compiled
+from asperity.kernels.projected_cg import precondition
 from asperity.store import Store
 from asperity.surfaces.edges import Edges
 from asperity.surfaces.faults import Fault
@@ -198,3 +203,34 @@ def test_the_device_is_named_or_that_of_the_environment(monkeypatch):
     choose_device("cpu")
     assert os.environ["ASPERITY_DEVICE"] == "cpu"
     assert find_device() is None
+
+
+@compiled(_nrt=False)
+def preconditioned(room, field, taps, target):
+    """Apply the stencil to a field (nx, ny) on a box; the target receives the result."""
+    nx, ny = field.shape
+    b = empty_box(nx, ny, room)
+    masked = b.masked[2 * b.pitch :]
+    for i in range(nx):
+        for j in range(ny):
+            masked[i * b.pitch + j] = field[i, j]
+    sums = precondition(b, taps, b.z, None)
+    for i in range(nx):
+        for j in range(ny):
+            target[i, j] = b.z[i * b.pitch + j]
+    return sums
+
+
+@pytest.mark.parametrize(("kind", "accuracy"), [(np.float64, 1e-13), (np.float32, 1e-5)])
+def test_the_stencil_of_the_processor_is_that_of_the_device(kind, accuracy):
+    """Rows are whole vectors, or not; nothing of a row comes into the next."""
+    for ny in (5, 14, 15, 31, 40):
+        rng = np.random.default_rng(ny)
+        field = (rng.normal(size=(6, ny)) * (rng.random((6, ny)) < 0.8)).astype(kind)
+        taps, found = rng.normal(size=6).astype(kind), np.zeros((6, ny), kind)
+        room = aligned(box_room(6, ny, 64, 64, width(kind)), kind)
+        sums = preconditioned(room, field, taps, found)
+        expected = batched.apply_stencil(field[None], tuple(taps.tolist()), np)[0] * (field != 0.0)
+        np.testing.assert_allclose(found, expected, rtol=0, atol=accuracy)
+        product = (field * expected).sum()
+        assert sums == pytest.approx((product, product, expected.sum()), abs=300.0 * accuracy)

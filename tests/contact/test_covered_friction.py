@@ -8,6 +8,8 @@ from scipy.ndimage import gaussian_filter
 
 from asperity import FrictionalHalfSpace, HalfSpace, Hertz, Material
 from asperity.contact.creep import creep_curve
+from asperity.contact.friction import cell_places
+from asperity.contact.traction_rims import turn_at
 from asperity.kernels.traction_influence import (
     means_of_pressure,
     means_of_traction,
@@ -378,3 +380,18 @@ def test_the_steps_of_a_shift_that_turns_back_hardly_matter():
         assert one.elastic_energy == pytest.approx(other.elastic_energy, rel=2e-3)
         works = sum(state.work for state in many[4 * corner : 4 * corner + 4])
         assert one.work == pytest.approx(works, rel=0.01)
+
+
+def test_the_room_of_a_shift_that_turns_reaches_from_tractions_to_the_bound():
+    normal, solver, _, _ = elliptic(6, nu=0.0, offset=(0.3, 0.1))
+    state = solver.shift(normal, force=(-0.7 * FRICTION * LOAD, None))
+    sides = tuple(side / SHEAR for side in solver.half_space.spacing)
+    traction = state.traction[0] + 1j * state.traction[1]
+    assert turn_at(state, (1e-6, 2e-6, 0.0), state.bound, sides, 0.0) is None
+    for motion in ((-1e-6, 0.0, 0.0), (-1e-6, 2e-6, 0.0), (-2e-6, -1e-6, 1e-4)):
+        turn = turn_at(state, motion, state.bound, sides, 0.0)
+        x, y = cell_places(solver.half_space)
+        way = -complex(*motion[:2]) - motion[2] * (1j * x - y)
+        reached = np.abs(traction + turn.room * way / np.abs(way))
+        np.testing.assert_allclose(reached, state.bound, rtol=0, atol=2e-6 * state.bound.max())
+        assert (turn.room[state.bound > 0.0] > 0.0).all()

@@ -295,3 +295,36 @@ test_what_is_refused = refusals(
         "normal of edges: .*0 to 1",
     ),
 )
+
+
+def flowing_at(place, drop, hardness=2e9, deeper=None):
+    """How a cell at a place by a straight edge gives way: of a drop, m, or those after it of another one."""
+    places = place - np.arange(5.0)[:, None] + 2.0
+    drops = np.where(np.abs(places) < 0.5, drop, np.where(places < 0.0, deeper or drop, 0.0))
+    edges = Edges(places * CELL, np.ones((5, 1)), drops, (CELL, CELL))
+    soft = softness_at(edges, MODULUS, hardness)
+    return [field[2, 0] for field in soft]
+
+
+def test_slopes_flow_later_than_steps_and_sink_as_far_as_they_carry():
+    softness, _, _, deep, _, step_yields = flowing_at(0.0, 100 * UM)
+    assert deep == pytest.approx(0.5 * 2e9, rel=1e-3)
+    flows, yields = np.transpose([flowing_at(0.0, each * UM)[3::2] for each in (2.0, 1.0, 0.5, 0.2)])
+    assert (np.diff([deep, *flows]) > 0.0).all()
+    assert (np.diff([1.001 * step_yields, *yields]) < 0.0).all()
+    carried = 2e9 * 0.5**2 / (2 * 0.2 * UM)  # of a slope, by which p rises with what it sinks
+    assert yields[-1] == pytest.approx(1.0 / carried, rel=1e-6)
+    assert flows[-1] == pytest.approx(1e9 / (1.0 - 0.3 * carried * softness), rel=1e-6)
+
+
+def test_whole_cells_beside_deep_edges_flow_bit_by_bit_and_others_at_once():
+    width = CELL / MODULUS
+    more = [flowing_at(place, 100 * UM)[4] / (2e9 * width) for place in (0.3, 0.7, 1.4, 1.9)]
+    assert more == pytest.approx([more[0], 0.2, 0.2, 0.2], rel=0.01)
+    assert flowing_at(1.4, 0.01 * UM)[4] < 0.03 * 2e9 * width
+    assert flowing_at(2.6, 100 * UM)[0] == 0.0
+
+
+def test_cells_that_are_nearly_whole_sink_as_deep_as_those_beside_them():
+    for place, expected in ((0.39, 3 * UM), (0.45, 50 * UM)):
+        assert flowing_at(place, 3 * UM, deeper=50 * UM)[1] == pytest.approx(expected)

@@ -560,7 +560,6 @@ class FrictionalHalfSpace:
             if turn:
                 _cells(rims.origin, box)[:] = turn.traction[inside]
                 _cells(rims.room, box)[:] = turn.room[inside]
-                _cells(rims.way, box)[:] = turn.way[inside]
         task = kernel.TractionTask(own, carried, not steady, manner.rtol, MAX_ITERATIONS)
         iterations, convolutions, worst = kernel.solve_traction(box, linear, rims, task)
         outcome = Outcome.CONVERGED if worst <= manner.rtol else Outcome.ITERATION_LIMIT

@@ -12,7 +12,7 @@ from asperity.kernels.traction_rims import find_left, set_bound, traction_rims
 from asperity.written_numbers import rounded
 
 NO_ROOM = 1e-6
-"""Of tractions to the bound, over that, which rounding may leave of none."""
+"""Of tractions to the bound, over that, at least: cells without any are at rims, too."""
 
 
 def rows_ahead(distance: float, side: float, steady: bool) -> int:
@@ -107,7 +107,6 @@ class Turn:
     traction: Complex  # (nx, ny), x + iy, Pa
     left: Complex  # what rims leave in it, m
     room: Array  # from there to the bound, the way tractions change, Pa
-    way: Complex  # direction of that where there is no room, else zero
 
     def to(self, more: Complex, inside: tuple[slice, slice]) -> Array:
         """What rims leave where more has come in a part of the grid (2, nx, ny), m."""
@@ -144,8 +143,7 @@ def turn_at(
         return None
     square = along**2 + bound**2 - np.abs(traction) ** 2
     room = np.maximum(np.sqrt(np.maximum(square, 0.0)) - along, 0.0)
-    none = (bound > 0.0) & (room <= NO_ROOM * bound)
-    return Turn(traction, left, np.where(bound > 0.0, np.maximum(room, NO_ROOM * bound), 0.0), way * none)
+    return Turn(traction, left, np.where(bound > 0.0, np.maximum(room, NO_ROOM * bound), 0.0))
 
 
 def _ahead(field: Complex, rows: int) -> Complex:

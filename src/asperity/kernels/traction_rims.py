@@ -57,7 +57,6 @@ class TractionRims(NamedTuple):
     origin: NDArray  # (size,), tractions from which they change, of which rims are known, x + iy, Pa
     change: NDArray  # (size,), tractions less these, Pa
     room: NDArray  # (size,), from there to the bound, along the way that they change, Pa
-    way: NDArray  # (size,), direction of that where there is no room, else zero
     missing: NDArray  # (size, and a row on both sides,), what is missing of that, Pa
     bound_left: NDArray  # (size,), w S R/G of the room, m
     bound_normal: NDArray  # (size,), normal of its rims, x + iy
@@ -79,10 +78,10 @@ def traction_rims(
     size = len(enters)
     missing = np.zeros(size + 2 * pitch)
     room, bound_left, fall, *slopes = np.zeros((6, size))
-    bound_normal, left, earlier, origin, change, way = np.zeros((6, size), complex)
+    bound_normal, left, earlier, origin, change = np.zeros((5, size), complex)
     giving = np.zeros((3, size), np.float32)
     known = (*sides, poisson, pitch, ahead, enters, beyond, np.zeros(size), earlier, origin, change)
-    of_bound = (room, way, missing, bound_left, bound_normal, np.array(slopes))
+    of_bound = (room, missing, bound_left, bound_normal, np.array(slopes))
     return TractionRims._make((*known, *of_bound, left, fall, *giving, np.zeros(size, np.complex64)))
 
 
@@ -152,7 +151,7 @@ def _left_by_large(rims: TractionRims, bound: NDArray, traction: NDArray, q: int
     turn by what it leaves itself.
     """
     size = abs(traction[q])
-    toward = traction[q] / size if size > 0.0 else rims.way[q]
+    toward = traction[q] / size
     left, fall, normal = _rim_at(rims, q)
     rims.fall[q] = fall * (1.0 - rims.poisson * (toward * normal.conjugate()).real ** 2)
     outer = rims.bound_left[q]
@@ -181,10 +180,8 @@ def _left_by_small(rims: TractionRims, traction: NDArray, q: int) -> complex:
 
 
 @compiled(**INNER)
-def _largeness(rims: TractionRims, bound: NDArray, traction: NDArray, q: int) -> float:
+def _largeness(bound: NDArray, traction: NDArray, q: int) -> float:
     """Share in which a traction counts as large, from 0 to 1."""
-    if rims.way[q] != 0.0:
-        return 1.0
     size = min(abs(traction[q]) / (SMALL * bound[q]), 1.0)
     return size * size * (3.0 - 2.0 * size)
 
@@ -204,7 +201,7 @@ def find_left(rims: TractionRims, tractions: NDArray) -> None:
             share = rims.bound_left[q] / bound[q]
             rims.left[q] = -share * _turned(rims, traction[q], rims.bound_normal[q])
         elif bound[q] > 0.0:
-            large = _largeness(rims, bound, traction, q)
+            large = _largeness(bound, traction, q)
             if large > 0.0:
                 rims.left[q] = large * _left_by_large(rims, bound, traction, q)
             if large < 1.0 and rims.bound_normal[q] != 0.0:
@@ -258,10 +255,10 @@ def _set_giving_of(
     rims: TractionRims, bound: NDArray, traction: NDArray, q: int, sticks: bool, unmet: float, diagonal: float
 ) -> None:
     """Find how much more than a whole one a cell gives way, whose slip along its traction is unmet, m."""
-    large = _largeness(rims, bound, traction, q)
+    large = _largeness(bound, traction, q)
     small = max(-rims.slopes[0, q], 0.0)
     turning = small
-    if large == 1.0 and traction[q] != 0.0:
+    if large == 1.0:
         turning = max((rims.left[q] * traction[q].conjugate()).real / abs(traction[q]) ** 2, 0.0)
     rims.turning[q] = turning / diagonal
     if sticks:
@@ -284,7 +281,7 @@ def set_giving(rims: TractionRims | None, slip: NDArray, normal: NDArray, diagon
                 if rims.ahead > 0 and behind >= 0:
                     rims.entry[q] = rims.bound_left[q] / ((bound[q] + bound[behind]) * diagonal)
             elif bound[q] > 0.0:
-                toward = traction[q] / size if size > 0.0 else rims.way[q]
+                toward = traction[q] / size if size > 0.0 else 0.0j
                 rims.toward[q] = toward
                 unmet = (slip[q] * toward.conjugate()).real
                 _set_giving_of(rims, bound, traction, q, normal[q] == 0.0, unmet, diagonal)
