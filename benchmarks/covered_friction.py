@@ -16,7 +16,7 @@ import warnings
 import numpy as np
 from scipy.ndimage import gaussian_filter
 
-from asperity import FrictionalHalfSpace, HalfSpace, Hertz, Material
+from asperity import Friction, FrictionalHalfSpace, HalfSpace, Hertz, Material
 from asperity.errors import OutOfRangeWarning, UnconvergedWarning
 
 FRICTION, SHEAR, LOAD, RADIUS = 0.3, 1e9, 100.0, 0.1
@@ -107,6 +107,25 @@ def rolled(across, ratio, motion, offset, cells):
     return np.array((along, aside, moment / mean)) / found.limit
 
 
+def fallen(across, offset, cells, friction):
+    """Force of a ball that rolls, over the load."""
+    normal, solver, *_ = contact(across, 1.0, 0.3, offset, cells)
+    found = FrictionalHalfSpace(solver.half_space, solver.bodies, friction).roll(normal, (2e-3, 0.0))
+    return found.force[0] / LOAD
+
+
+def errors_where_friction_falls(columns):
+    """Largest errors of the force where friction falls at once to a half, over the force in the limit.
+
+    There all cells have the half, for which two grids of whole cells stand.
+    """
+    coarse, fine = (fallen(n, OFFSETS[0], "whole", 0.5 * FRICTION) for n in (40, 80))
+    limit = 2.0 * fine - coarse
+    falling = Friction(FRICTION, kinetic=0.5)
+    forces = [[fallen(across, each, cells, falling) for each in OFFSETS] for across, cells in columns]
+    return np.abs(np.array(forces) / limit - 1.0).max(axis=1)
+
+
 def errors():
     """Print the table of errors."""
     print("| largest error, % | covered, 6 | 9 | whole, 6 | 9 |")
@@ -126,6 +145,8 @@ def errors():
                     misses = [rolled(across, ratio, motion, each, cells) - limit for each in OFFSETS]
                     largest[k] = max(largest[k], np.abs(misses).max())
         print(f"| rolling, {name} |", " | ".join(f"{100.0 * each:.2f}" for each in largest), "|")
+    fallen_by = errors_where_friction_falls(columns)
+    print("| rolling, friction halves at once |", " | ".join(f"{100.0 * e:.2f}" for e in fallen_by), "|")
 
 
 def random_state(seed, rms, cells, way):

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter
 
-from asperity import FrictionalHalfSpace, HalfSpace, Hertz, Material
+from asperity import Friction, FrictionalHalfSpace, HalfSpace, Hertz, Material
 from asperity.contact.creep import creep_curve
 from asperity.contact.friction import cell_places
-from asperity.contact.traction_rims import turn_at
+from asperity.contact.traction_rims import turn_at, with_patches
 from asperity.kernels.traction_influence import (
     means_of_pressure,
     means_of_traction,
@@ -395,3 +395,39 @@ def test_the_room_of_a_shift_that_turns_reaches_from_tractions_to_the_bound():
         reached = np.abs(traction + turn.room * way / np.abs(way))
         np.testing.assert_allclose(reached, state.bound, rtol=0, atol=2e-6 * state.bound.max())
         assert (turn.room[state.bound > 0.0] > 0.0).all()
+
+
+def falling_at_once(across, cells, way, kinetic=0.5):
+    """Force over the load of a ball that is shifted or rolls, of friction that falls and of the lower one."""
+    forces = []
+    for friction in (Friction(FRICTION, kinetic), Friction(kinetic * FRICTION)):
+        normal, solver, *_ = elliptic(across, offset=(0.4, 0.2), cells=cells, friction=friction)
+        move = solver.shift if way == "shift" else solver.roll
+        motion = (3e-6, 1.5e-6) if way == "shift" else (2e-3, 1e-3)
+        found = move(normal, motion)
+        assert found.converged
+        forces.append(math.hypot(*found.force) / LOAD)
+    return forces
+
+
+@pytest.mark.parametrize("way", ["shift", "roll"])
+def test_friction_that_falls_at_once_has_its_limit_of_small_cells(way):
+    """That of the lower coefficient, to which whole cells come in first order."""
+    fallen, low = falling_at_once(6, "covered", way)
+    assert fallen == pytest.approx(low, rel=1e-5)
+    off = []
+    for across in (6, 24):
+        fallen, low = falling_at_once(across, "whole", way)
+        off.append(fallen / low - 1.0)
+    assert off[0] > 0.03
+    assert 0.2 * off[0] < off[1] < 0.4 * off[0]
+
+
+def test_patches_in_which_no_cell_slips_keep_their_coefficient():
+    bound = np.array([[1.0, 1.0, 0.0, 2.0], [0.0, 1.0, 0.0, 2.0], [0.0, 0.0, 0.0, 0.0], [3.0, 0.0, 1.0, 1.0]])
+    slipping = np.zeros(bound.shape, bool)
+    assert not with_patches(slipping, bound).any()
+    slipping[1, 1] = slipping[3, 0] = True
+    expected = np.zeros(bound.shape, bool)
+    expected[[0, 0, 1, 3], [0, 1, 1, 0]] = True
+    assert (with_patches(slipping, bound) == expected).all()

@@ -38,7 +38,8 @@ class Friction:
     Notes
     -----
     The exponential is that of O. Polach, Wear 258 (2005) 992, here at each cell. Where the coefficient falls
-    at once, a cell that has slipped in a solution keeps the lower one in it.
+    at once, a cell that has slipped in a solution keeps the lower one in it, and on covered cells all of its
+    patch: slip runs on from its rims, as nothing takes up what is released there.
 
     Examples
     --------

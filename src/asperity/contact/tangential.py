@@ -24,6 +24,7 @@ from asperity.contact.traction_rims import (
     slip_ahead,
     stored_energy,
     turn_at,
+    with_patches,
 )
 from asperity.errors import ComputationError, Outcome, OutOfRangeWarning, UnconvergedWarning, percent
 from asperity.kernels import traction as kernel
@@ -463,7 +464,7 @@ class FrictionalHalfSpace:
             slipping = (found.bound > 0.0) & np.logical_not(found.sticks)
             # half of the way: slip and coefficient chase each other where friction falls steeply
             velocity = 0.5 * (velocity + np.hypot(*found.slip) * manner.speed * slipping)
-            slipped |= slipping
+            slipped |= with_patches(slipping, found.bound) if self._covers else slipping
             if self._couples:
                 drawn = found.traction[0] - 1j * found.traction[1]
                 gap = normal.undeformed_gap + _convolved(self._influence(0.0, False)[1], drawn).real

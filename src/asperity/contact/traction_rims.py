@@ -146,6 +146,18 @@ def turn_at(
     return Turn(traction, left, np.where(bound > 0.0, np.maximum(room, NO_ROOM * bound), 0.0))
 
 
+def with_patches(slipping: Flags, bound: Array) -> Flags:
+    """All cells (nx, ny) of patches, which a bound above zero connects, in which cells slip.
+
+    Where friction falls at once, tractions at the end of a region that slips rise above any bound as cells
+    get smaller, and slip runs on until none is above the lower one.
+    """
+    from scipy.ndimage import label
+
+    patches, _ = label(bound > 0.0)
+    return np.isin(patches, patches[slipping])
+
+
 def _ahead(field: Complex, rows: int) -> Complex:
     """A field so many rows ahead of a cell, zero beyond the grid."""
     found = np.zeros_like(field)
