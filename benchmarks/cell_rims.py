@@ -216,11 +216,12 @@ def rough_ball(fine, across, height, seed, times=4):
     return 0.5 * np.add.outer(x**2, x**2) + rough_waves(x, height, seed)
 
 
-def rough_waves(x, height, seed):
-    """Waves of a half-width and less on points x squared, of an rms height."""
+def rough_waves(x, height, seed, y=None):
+    """Waves of a half-width and less, of an rms height, on points x and y, or x squared."""
+    y = x if y is None else y
     rng = np.random.default_rng(seed)
     waves = sum(
-        rng.normal() * np.cos(np.add.outer(k * x, m * x) + 6.3 * rng.random())
+        rng.normal() * np.cos(np.add.outer(k * x, m * y) + 6.3 * rng.random())
         for k, m in rng.normal(0.0, 5.0, (30, 2))
     )
     return height * waves / math.sqrt(15.0)

@@ -1,73 +1,103 @@
 """Numbers that prove contacts on covered cells to be the only ones hold for the curves that there are."""
 
+import math
 import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from asperity.kernels.rim_curves import END, LEFT, cubics
+from asperity.kernels.rim_curves import LEFT, cubics, remaining_gap
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
+import rim_bounds
 import rim_monotony
-from rim_monotony import APART, CLASSES, FAR, NOT_MONOTONE, REST, USUAL
+from rim_bounds import described, left_on, numbers_of, proved
+from rim_monotony import NOT_MONOTONE, contact_of_ball, left_over, own_numbers
 
 
-def least_of_pairs(ratios, slants, constants, apart, rng, count=6000):
-    """Least f of a class between random cells of it and any others, half of them close by."""
-
-    def drawn(ends):
-        return ends[0] + (ends[1] - ends[0]) * rng.random(count)
-
-    u, m = drawn(ratios), drawn(slants)
-    near = rng.random(count) < 0.5
-    spread = 10.0 ** rng.uniform(-3.0, -0.5, count)
-    w = np.where(near, np.abs(u + 0.1 * spread * rng.normal(size=count)), 1.3 * rng.random(count))
-    k = np.where(near, np.abs(m + spread * rng.normal(size=count)), rng.random(count) ** 2)
-    k = np.minimum(k, 1.0)
-    points = [np.stack([each, each]) for each in (u, m, w, k)]
-    found = []
-    for swapped in (False, True):
-        cells = (
-            rim_monotony.cell(*points[:2], False, constants, apart),
-            rim_monotony.cell(*points[2:], swapped, constants),
-        )
-        found.append(rim_monotony.least(*cells, constants).min())
-    return min(found)
+def left_there(p, x, y, elongation, flows):
+    """The gap that is left, as kernels compute it."""
+    if flows:
+        return left_there(p, x, y, elongation, False) - left_there(1.0 - p, x, y, elongation, False)
+    step = math.hypot(x, y)
+    ratio = min(math.sqrt(p / step), rim_bounds.END)
+    return step**2 / math.sqrt(x**2 + elongation * y**2) * remaining_gap(ratio, min(x, y) / max(x, y))[0]
 
 
-def least_of_all():
-    rng = np.random.default_rng(3)
-    classes = [(*each, 0.0) for each in CLASSES] + [(*each, *USUAL, 0.0) for each in REST]
-    classes += [((0.0, 0.0), slants, *USUAL[:2], across, apart) for slants, apart, across in APART]
-    return min(
-        least_of_pairs(ratios, slants, constants, apart, rng) for ratios, slants, *constants, apart in classes
-    )
+def cells_of(pressure, x, y, across, flows):
+    """A cell with the gap that is left in it, as `numbers_of` takes it."""
+    return np.array([[pressure], [x], [y], [left_there(pressure, x, y, across**-2, flows)]])
 
 
-def test_numbers_of_all_classes_hold_for_the_curves():
-    assert least_of_all() > -1e-12
-    assert rim_monotony.far_enough((0.0, END), (0.0, 1.0), USUAL)
+@pytest.mark.parametrize("flows", [False, True])
+@pytest.mark.parametrize("elongation", [1.0, 0.25, 4.0])
+def test_boxes_hold_what_is_left_and_its_slopes(elongation, flows):
+    rng = np.random.default_rng(2)
+    low = np.stack([0.9 * rng.random(60), 0.9 * rng.random(60) + 0.01, 0.99 * rng.random(60)])
+    knots = rim_bounds.SLANT_KNOTS
+    top = np.minimum(low + 0.1 * rng.random((3, 60)) ** 4, 1.0)
+    top[2] = np.minimum(top[2], knots[np.searchsorted(knots, low[2], side="right")])
+    box = np.stack([low, top], axis=1)
+    left = left_on(box, (np.ones(60), np.full(60, elongation)), flows)
+    for k in range(60):
+        for _ in range(5):
+            p, x, m = low[:, k] + rng.random(3) * (top - low)[:, k]
+
+            def at(p, x, y):
+                return left_there(p, x, y, elongation, flows)
+
+            h, y = 1e-7, m * x
+            slopes = (
+                at(p + h, x, y) - at(p, x, y),
+                at(p, x + h, y) - at(p, x, y),
+                at(p, x, y + h) - at(p, x, y),
+                at(p, x + h, m * (x + h)) - at(p, x, y),
+                at(p, x, y + h * x) - at(p, x, y),
+            )
+            for interval, value in zip(left, (at(p, x, y), *(each / h for each in slopes)), strict=True):
+                spare = 1e-4 * (1.0 + abs(value))
+                assert interval[0, k] - spare <= value <= interval[1, k] + spare
 
 
-def test_all_cells_under_pressure_are_in_a_class():
-    rng = np.random.default_rng(4)
-    u, m = FAR * rng.random(20_000) ** 2, rng.random(20_000)
-    known = [(ratios, slants) for ratios, slants, *_ in CLASSES] + list(REST)
-    inside = [(r[0] <= u) & (u <= r[1]) & (s[0] <= m) & (m <= s[1]) for r, s in known]
-    assert np.any(inside, axis=0).all()
+@pytest.mark.parametrize(
+    ("pressure", "x", "y", "across", "flows"),
+    [
+        (2e-4, 1.0, 0.02, 1.0, False),
+        (0.5, 0.2, 1.0, 2.0, False),
+        (1.0, 0.05, 0.02, 0.5, False),
+        (0.45, 0.1, 0.8, 1.0, True),
+        (0.02, 0.5, 0.3, 2.0, True),
+    ],
+)
+def test_numbers_of_a_cell_hold_elsewhere_and_lesser_ones_are_refuted(pressure, x, y, across, flows):
+    cells = cells_of(pressure, x, y, across, flows)
+    c, a, b = numbers_of(cells, across, flows)
+    assert c < rim_bounds.UNPROVED
+    rng = np.random.default_rng(5)
+    for size in 10.0 ** rng.uniform(-3.0, 0.0, 3000):
+        p, u, v = np.abs(cells[:3, 0] + size * rng.normal(size=3))
+        if flows and max(p, u, v) > 1.0:
+            continue
+        gain = (p - pressure) * (left_there(p, u, v, across**-2, flows) - cells[3, 0])
+        assert gain <= c * (p - pressure) ** 2 + a * (u - x) ** 2 + b * (v - y) ** 2 + 1e-12
+    lesser = np.full((3, 1), rim_bounds.LEAST)
+    assert not proved(described(cells, lesser, across, flows), flows)
 
 
-@pytest.mark.parametrize("change", [1.15 * LEFT, LEFT + 0.3 * (LEFT - LEFT[0])])
-def test_other_curves_do_not_pass(change, monkeypatch):
-    monkeypatch.setattr(rim_monotony, "CUBICS", cubics(change))
-    assert least_of_all() < -1e-5
+def test_other_curves_do_not_pass(monkeypatch):
+    cells = cells_of(0.45, 0.1, 0.8, 1.0, True)
+    numbers = numbers_of(cells, 1.0, True)
+    assert proved(described(cells, numbers, 1.0, True), True)
+    monkeypatch.setattr(rim_bounds, "CUBICS", cubics(2.0 * LEFT))
+    extremes = [[rim_bounds.extremes(j, order) for j in range(rim_bounds.SLANTS)] for order in (0, 1)]
+    monkeypatch.setattr(rim_bounds, "EXTREMES", extremes)
+    cells[3] *= 2.0
+    assert not proved(described(cells, numbers, 1.0, True), True)
 
 
-def test_boxes_prove_a_class_and_refute_less():
-    ratios, slants = (0.02, 0.04), (0.045, 0.07)
-    assert rim_monotony.proved(ratios, slants, (*USUAL[:2], 0.09)) > 0
-    assert rim_monotony.proved(ratios, slants, (*USUAL[:2], 0.07)) == 0
+def test_what_bare_cells_take_is_held_without_a_hardness():
+    assert min(rim_bounds.growth(across) for across in (0.5, 1.0, 2.0)) > 0.001
 
 
 def test_there_is_a_contact():
@@ -76,7 +106,14 @@ def test_there_is_a_contact():
     assert times_over > 3.0
 
 
-def test_a_contact_is_the_only_one_though_not_all_pressures_are_monotone():
-    pressure, gap = rim_monotony.contact_of_ball(6, 0.1, np.random.default_rng(1))
-    assert rim_monotony.left_over(pressure, rim_monotony.needed(pressure, gap)) > 0.01
+@pytest.mark.parametrize(
+    ("across", "hardness"), [(1.0, math.inf), (1.0, 0.5), (2.0, math.inf), (0.5, math.inf)]
+)
+def test_a_contact_is_the_only_one(across, hardness):
+    contact = contact_of_ball(3 * max(1.0, across / 1.5), 0.1, np.random.default_rng(1), across, hardness)
+    assert left_over(own_numbers(*contact, across, hardness), across) > 0.03
+
+
+def test_not_all_pressures_are_monotone():
     assert rim_monotony.not_monotone(NOT_MONOTONE) < -0.1
+    assert rim_monotony.least_minor(NOT_MONOTONE) > 0.5
