@@ -13,6 +13,7 @@ from asperity.reduction.stiffness import ForceCurve, ForceTable
 from asperity.reduction.texture import areal_texture
 from asperity.rolling.rest import STEPPED_TOLERANCE, at_rest, evaluated
 from asperity.structures.body import Body
+from asperity.surfaces.faults import Fault, lay
 from asperity.surfaces.strip import Rows
 from refusals import refusals
 
@@ -36,6 +37,26 @@ def test_it_is_the_half_space_under_the_position():
         assert slope == pytest.approx(alone.stiffness, rel=1e-6)
         law.accept(step)
     assert law.evaluate(1, -1e-6) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("hardness", [None, 1e9])
+def test_edges_of_a_pit_give_way_as_under_a_contact_of_its_own(hardness):
+    """They flow in part, too; where the window leaves the pit nothing of it stays."""
+    pit = Fault("pit", angle=0.5, length=0.06e-3, depth=0.05e-3)
+    faults, edges = lay((pit,), (400, N), (DX, DX))
+    nothing = np.zeros(faults.shape)
+    options = {"faults": faults, "edges": edges, "hardness": hardness, "rtol": 1e-9}
+    space = HalfSpace((N, N), (DX, DX), MODULUS, hardness)
+    rows = [32, 36, 200, 35]
+    law = direct(nothing, **options).prepare(np.array(rows) * DX)
+    for step, row in enumerate(rows):
+        window = slice(row - N // 2, row + N // 2 + 1)
+        under = edges.rearranged(lambda field, window=window: field[window])
+        alone = space.solve(BODY - faults[window], approach=0.5e-6, rtol=1e-9, edges=under)
+        found, slope = law.evaluate(step, 0.5e-6)
+        assert found == pytest.approx(alone.force, rel=1e-7)
+        assert slope == pytest.approx(alone.stiffness, rel=1e-5)
+        law.accept(step)
 
 
 def test_at_rest_it_carries_the_load_at_any_tolerance():

@@ -238,14 +238,10 @@ class DirectOnPath:
         """Find the edges in the window at a step, of both surfaces if there are two."""
         self._edges = self._edges_at(step)
         if self._sharp:
-            room = self.block.room.edges
             soft = self.half_space.softness(self._edges or self._without)
-            for each, values in (
-                (room.softness, soft.softness),
-                (room.drop, soft.drop),
-                (room.power, soft.power),
-                (room.flow, soft.flow),
-            ):
+            for each, values in zip(
+                self.block.room.edges, soft, strict=False
+            ):  # it begins with the same fields
                 each[:] = values
 
     def _edges_at(self, step: int) -> Edges | None:
