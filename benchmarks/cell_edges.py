@@ -42,6 +42,7 @@ its half-width a away. The row is that whose middles lie from 0.33 cells before 
 """
 
 import argparse
+import itertools
 import math
 import sys
 
@@ -305,8 +306,23 @@ def print_flow(cells=4000):
         print(f"| {q:.3f} | {more:.3f} | {1.0 - (1.0 - q**4) ** (2 / 3):.3f} | {', '.join(sinks)} |")
 
 
+def print_errors(errors):
+    """Print a table of errors, by fault and hardness."""
+    print("\n| fault | hardness, GPa | rms, % | most | beyond 1 % | cases |")
+    print("|---|---|---|---|---|---|")
+    for (kind, hardness), each in sorted(errors.items()):
+        rms, most, beyond = math.sqrt(np.mean(np.square(each))), np.abs(each).max(), np.abs(each) > 1.0
+        print(f"| {kind} | {hardness / 1e9} | {rms:.2f} | {most:.2f} | {beyond.sum()} | {len(each)} |")
+
+
+def missed(fault, hardness, cell, middle, place):
+    """Error of a force where surfaces flow, against that on cells an eighth as large, %."""
+    coarse, fine = (force_over(fault, each, middle, place, hardness=hardness) for each in (cell, cell / 8))
+    return 100.0 * (coarse / fine - 1.0)
+
+
 def check_flow(cell=30e-6, draws=220):
-    """Print that, and errors over pits and spalls of surfaces that flow, against cells an eighth as large."""
+    """Print that, and errors over faults of surfaces that flow: drawn at random, and all of a grid."""
     print_flow()
     rng = np.random.default_rng(2024)
     errors = {}
@@ -316,15 +332,16 @@ def check_flow(cell=30e-6, draws=220):
         edge = float(rng.choice([0.0, 0.0, rng.uniform(20e-6, 200e-6)]))
         middle, place = (rng.random(2) - 0.5) * cell, rng.uniform(0.0, 0.15e-3)
         fault = Fault(kind, length=rng.uniform(0.30e-3, 0.40e-3), depth=depth, edge=edge)
-        coarse, fine = (
-            force_over(fault, each, middle, place, hardness=hardness) for each in (cell, cell / 8)
-        )
-        errors.setdefault((kind, hardness), []).append(100.0 * (coarse / fine - 1.0))
-    print("\n| fault | hardness, GPa | rms, % | most | cases |")
-    print("|---|---|---|---|---|")
-    for (kind, hardness), each in sorted(errors.items()):
-        rms, most = math.sqrt(np.mean(np.square(each))), np.abs(each).max()
-        print(f"| {kind} | {hardness / 1e9} | {rms:.2f} | {most:.2f} | {len(each)} |")
+        errors.setdefault((kind, hardness), []).append(missed(fault, hardness, cell, middle, place))
+    print_errors(errors)
+    errors = {}
+    shapes = [each for group in SLOPES.values() for each in group]
+    for kind, hardness in itertools.product(("pit", "spall"), (1.5e9, 2e9, 3e9, 4e9)):
+        for (depth, edge), size in itertools.product(shapes, np.arange(0.30e-3, 0.405e-3, 0.01e-3)):
+            fault = Fault(kind, length=size, depth=depth, edge=edge)
+            middle, place = (rng.random(2) - 0.5) * cell, rng.uniform(0.0, 0.15e-3)
+            errors.setdefault((kind, hardness), []).append(missed(fault, hardness, cell, middle, place))
+    print_errors(errors)
 
 
 if __name__ == "__main__":

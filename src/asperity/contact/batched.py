@@ -12,6 +12,7 @@ from asperity.contact.elastic_grid import ElasticGrid
 from asperity.contact.solved import edge_share
 from asperity.errors import ComputationError, InputError
 from asperity.kernels import batched
+from asperity.kernels.edges import GIVEN
 from asperity.kernels.scanning import TRUNCATED, Block
 
 DEVICES = ("cpu", "gpu")
@@ -151,7 +152,7 @@ def _solved(half_space: ElasticGrid, b: Block, positions: slice, device: Device)
     pressure = xp.zeros_like(gap)
     taps = tuple(influence.taps.tolist())
     edges = b.room.edges
-    fields = edges[:6] if len(edges.softness) else ()
+    fields = edges[:GIVEN] if len(edges.softness) else ()
     at_edges = [xp.asarray(each)[rows] for each in fields]
     softest = influence.softest + float((edges.softness + edges.yielding).max(initial=0.0))
     totals = []

@@ -49,16 +49,16 @@ YIELDING = 30.0
 """Sides of a cell over E* by which it sinks with the pressure beyond that at which its sound part flows."""
 CARRYING = 0.5
 """Share of what is kept that flows no sooner: cells just beyond an edge carry in the place of others."""
-SOFTER = 0.273
-"""By how much of its softness a cell sinks more until its sound part flows: 4/π - 1."""
+SOFTER = 4.0 / np.pi - 1.0
+"""By how much of its softness a cell sinks more until its sound part flows."""
 FLOWING = (0.5, 0.65, 2.0, 2.5), (0.48, 0.2, 0.2, 0.0)
 """Places, and widths over E* by which cells sink more under the hardness, until they flow: linear between.
 
-Of those that an edge crosses, in plane strain (``benchmarks/cell_edges.py --flow``); beyond, whole cells that
-the border of the flow crosses, on average. Less if the step is not deep beside a width times H/E*.
+Of those that an edge crosses, in plane strain (``benchmarks/cell_edges.py --flow``); beyond, of whole cells
+that the border of the flow crosses, by trial. Less if the step is not deep beside a width times H/E*.
 """
 CARRIED = 0.3
-"""Share of what would be carried by a slope that begins at the edge: others are steps."""
+"""Share of what would be carried by a slope that begins at the edge, by trial: others are steps."""
 
 
 class Softness(NamedTuple):

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.kernels.edges import SHARPEST
+from asperity.kernels.edges import GIVEN, SHARPEST
 from asperity.kernels.fourier import smooth_length
 from asperity.kernels.projected_cg import LEAST, MOST, OFTEN, PATIENCE, WHOLE
 
@@ -179,7 +179,7 @@ def solve_batch(
         none = xp.zeros(count)
         members = _Members(
             xp.arange(count), tolerance, pressure, residual, nothing, nothing, none, none + 1.0, iterations,
-            active, *(at_edges or 6 * (None,)),
+            active, *(at_edges or GIVEN * (None,)),
         )  # fmt: skip
         while running := int(members.active.sum()):
             size = max(SMALLEST, 1 << (running - 1).bit_length())  # few: each needs a plan of transforms

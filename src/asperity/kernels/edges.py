@@ -23,6 +23,10 @@ SHARPEST = 1e-3
 """What is left of 1 − q⁴ where the derivative of φ is largest: at zero it has no bound."""
 
 
+GIVEN = 6
+"""Fields of `SoftCells` that are given for a block, as `contact.edges.Softness` has them: the first ones."""
+
+
 class SoftCells(NamedTuple):
     """Softness of the cells of a block, and those of a box that have any, one after the other."""
 
@@ -50,7 +54,7 @@ def soft_cells(soft: tuple[NDArray, ...] | None, count: int, dtype: DTypeLike) -
     """Make room for the edges of a block in a window of so many cells."""
     room = 0 if soft is None else count
     none = np.zeros((0, 0))
-    softness, drop, power, flow, flowing, yielding = 6 * (none,) if soft is None else soft
+    softness, drop, power, flow, flowing, yielding = GIVEN * (none,) if soft is None else soft
     row, number = np.zeros((2, 1), dtype=np.int64)
     places: NDArray = np.zeros(room, dtype=np.int64)
     fields: NDArray = np.zeros((9, room), dtype=dtype)

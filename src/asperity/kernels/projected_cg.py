@@ -133,7 +133,7 @@ class Task(NamedTuple):
     compliance: float
     largest: float  # largest overlap of the undeformed bodies, m
     rtol: float  # largest complementarity residual relative to that overlap
-    loose: float  # likewise, if the force settles: see `force_lacked`; zero where it is not looked at
+    loose: float  # likewise, if the force settles: see `carried_and_lacked`; zero where it is not looked at
     # no pressure of unit norm displaces by more, m/Pa: bounds the step of the projected gradient
     softest: float
     max_iterations: int  # iterations allowed
@@ -283,7 +283,7 @@ def _advance(
 
 
 @compiled(**CALLED, **REASSOCIATE)
-def force_lacked(b: Box) -> tuple[float, float]:
+def carried_and_lacked(b: Box) -> tuple[float, float]:
     """Sum of the pressure, Pa, and what it lacks, but for what is of second order.
 
     On a contact set the pressure lacks A⁻¹r, where r is the gap that is left to close, and its sum lacks rᵀu,
@@ -445,7 +445,7 @@ def solve(
             level = find_level(b, cap)
         tolerance = task.rtol * (task.largest + level - yielded)
         if looks_ahead:
-            carried, lacked = force_lacked(b)
+            carried, lacked = carried_and_lacked(b)
             force = carried + lacked
             settled = abs(force - expected) <= SETTLED * task.rtol * force
             expected = force

@@ -11,7 +11,7 @@ from asperity.kernels.edges import SoftCells, find_edges, soft_cells
 from asperity.kernels.influence import UNIT, Influence, convolution, is_prepared, whole_vectors
 from asperity.kernels.lanes import VECTOR_BYTES, aligned, lanes, width
 from asperity.kernels.options import CALLED, INNER, LOOP, ONCE, REASSOCIATE, compiled
-from asperity.kernels.projected_cg import Task, force_lacked, solve, survey, true_residual
+from asperity.kernels.projected_cg import Task, carried_and_lacked, solve, survey, true_residual
 from asperity.kernels.rims import (
     Rims,
     lay_bare,
@@ -351,7 +351,7 @@ def _solve_within(
         moving = moving and not (again and worst > 0.9 * before)  # else rounding hides what is left
     total = _leave(outer, outer.pressure, pressure, first, left)
     if b.loose > 0.0:
-        total += force_lacked(outer)[1]
+        total += carried_and_lacked(outer)[1]
         _leave(outer, outer.unit, rise, first, left)
     converged = worst <= asked * (largest + level)
     return Solution(True, converged, iterations, worst / (largest + level), total, level, nx, ny)

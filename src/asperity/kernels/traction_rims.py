@@ -11,10 +11,10 @@ normal n of a rim, and w, S and R of `kernels.rims`,
 is added to the displacement by tractions on cells: a body gives way along a rim as under a pressure there,
 and 1/(1 − ν) times as much aside. Cells that stick have no slip then, as those of a normal contact no gap.
 
-In steady rolling the slip of a cell is that of its material since it was a cell ahead, Ψ less Ψ ahead.
 Where a shift turns back, rims of the slip before stay. What changes from there is as a traction of its own,
 whose bound is the room that it has: `room` and `change` stand for g and q, and Ψ for its growth.
 
+In steady rolling the slip of a cell is that of its material since it was a cell ahead, Ψ less Ψ ahead.
 Material that rolls in from beyond the contact slips freely until then. Near a leading edge tractions are in
 proportion to pressures, and what they displace to the gap beyond, so that Ψ is −L(g) q/g there, and the free
 slip counts against the traction. What slips on is opposite to its traction at the end of a step, half a cell

@@ -239,9 +239,7 @@ class DirectOnPath:
         self._edges = self._edges_at(step)
         if self._sharp:
             soft = self.half_space.softness(self._edges or self._without)
-            for each, values in zip(
-                self.block.room.edges, soft, strict=False
-            ):  # it begins with the same fields
+            for each, values in zip(self.block.room.edges[: len(soft)], soft, strict=True):
                 each[:] = values
 
     def _edges_at(self, step: int) -> Edges | None:
