@@ -2,11 +2,13 @@
 
     python benchmarks/covered_friction.py            # errors with 6 and 9 cells in the smaller semi-axis
     python benchmarks/covered_friction.py --settle   # contacts at random: which do not settle
+    python benchmarks/covered_friction.py --samples  # rough samples: their share of the smooth force
 
 Balls and ellipses of like bodies, anywhere on the grid, beside those on whole cells. Shifts are Cattaneo's
 and Mindlin's, exact without Poisson's ratio. The limit of steady rolling is told by whole cells on two grids,
 of 40 and 80 cells, in first order; its errors are those of both forces over the friction and of the moment
-over that and the mean semi-axis. Rough contacts have heights that are smoothed by a Gaussian of 1.5 cells.
+over that and the mean semi-axis. Rough contacts have heights that are smoothed by a Gaussian of 1.5 cells;
+those of samples are means of a texture on cells a quarter as large, where whole ones tell the limit.
 """
 
 import argparse
@@ -17,6 +19,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter
 
 from asperity import Friction, FrictionalHalfSpace, HalfSpace, Hertz, Material
+from asperity.contact.creep import over_smooth, rolled_over
 from asperity.errors import OutOfRangeWarning, UnconvergedWarning
 
 FRICTION, SHEAR, LOAD, RADIUS = 0.3, 1e9, 100.0, 0.1
@@ -34,7 +37,10 @@ MOTIONS = {
 """Creepages, and spin times the mean semi-axis."""
 TURNS = (0.8, -0.6, 0.7, -0.2)
 """Friction between which a shift turns back, over the most there is."""
-SETTLING = 150
+SETTLING = 600
+PARTS = 4
+"""Of a side of a cell in which the limit of rough samples is found."""
+SAMPLES = 6
 
 
 def contact(across, ratio, nu, offset, cells, shape=1.0, rough=None):
@@ -180,13 +186,53 @@ def settle():
             print(f"| {way} | {rms} |", " | ".join(map(str, row)), "|", flush=True)
 
 
+def over_sample(across, cells, parts, heights, motion):
+    """Mean force over a sample that is known on the finest grid, over the smooth one; steps not settled."""
+    modulus = SHEAR / 0.7
+    smooth = Hertz(modulus, RADIUS, RADIUS)
+    side = smooth.semi_axes(smooth.approach(LOAD))[0] / (across * parts)
+    count = heights.shape[1] * parts // PARTS
+    x = side * (np.arange(count) - 0.5 * (count - 1))
+    gap = np.add.outer(x**2, x**2) / (2.0 * RADIUS) + side**2 / (12.0 * RADIUS)
+    space = HalfSpace(gap.shape, side, modulus, cells=cells)
+    body = Material("body", 2.6 * SHEAR, 0.3, 7850.0)
+    solver = FrictionalHalfSpace(space, (body, body), FRICTION)
+    step = PARTS // parts
+    means = heights.reshape(-1, step, count, step).mean(axis=(1, 3)) * smooth.approach(LOAD)
+    ((steady, states),) = rolled_over(solver, space.solve(gap, load=LOAD), means, [motion])
+    return over_smooth(steady, states, 0 if motion[0] else 1)[0], sum(not each.converged for each in states)
+
+
+def samples():
+    """Print largest errors of the share of rough samples in the smooth force."""
+    print("| cells in the semi-axis | creepage | covered, % | not settled | whole, % |")
+    for across in (6, 9):
+        for motion in ((1.5e-3, 0.0, 0.0), (0.0, 5.5e-4, 0.0)):
+            errors = []
+            for seed in range(SAMPLES):
+                shape = (13 * across + 9) * PARTS, (2 * across + 5) * PARTS
+                heights = gaussian_filter(np.random.default_rng(seed).normal(size=shape), 1.5 * PARTS)
+                heights *= 0.05 / heights.std()
+                limit, _ = over_sample(across, "whole", PARTS, heights, motion)
+                covered, left = over_sample(across, "covered", 1, heights, motion)
+                whole, _ = over_sample(across, "whole", 1, heights, motion)
+                errors.append((covered / limit - 1.0, left, whole / limit - 1.0))
+            errors = np.abs(errors)
+            largest = 100.0 * errors.max(axis=0)
+            left = int(errors[:, 1].sum())
+            print(f"| {across} | {motion[:2]} | {largest[0]:.2f} | {left} | {largest[2]:.2f} |", flush=True)
+
+
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--settle", action="store_true", help="which contacts do not settle")
+    parser.add_argument("--samples", action="store_true", help="the share of rough samples")
     asked = parser.parse_args()
     warnings.simplefilter("ignore", UnconvergedWarning)
     warnings.simplefilter("ignore", OutOfRangeWarning)
     if asked.settle:
         settle()
+    elif asked.samples:
+        samples()
     else:
         errors()

@@ -91,7 +91,6 @@ def test_covered_cells_of_a_case_press_their_heights_by_every_law_that_solves_th
     np.testing.assert_array_equal(mean.textures.line, point.textures.line)
     for each, cells in ((point, "whole"), (mean, "covered")):
         assert each.shape.half_space(1e9).cells == cells
-        assert each.shape.whole_half_space(None).cells == "whole"
         law = reduced(each).build("direct")
         np.testing.assert_array_equal(law.heights, whole(each.textures.path))
         assert law.prepare(np.array([each.case.record_start])).half_space.cells == cells

@@ -32,7 +32,8 @@ FULL_SLIP = 4.0
 """Creepage at which a curve ends, in those at which the linear theory gives all that friction carries."""
 LENGTHS, LEAST_LENGTHS, UNCOUNTED, STEPS = 4, 3, 2, 8
 """Lengths of the contact that a sample is rolled over, the fewest, and the first that do not count: the start
-fades by a factor of four in each. At most so many steps in one: the ratio of forces hardly needs them."""
+fades by a factor of four in each. On whole cells at most so many steps in one: their error is of first order
+in any, and in part that of the smooth contact, too."""
 ROLLED_RTOL = 1e-3
 """Of a step over a sample: it moves the mean force by 2e-4."""
 
@@ -163,20 +164,20 @@ def rolled_over(
 
     The rough surface moves through the contact with the material, as asperities do where bodies roll: each
     comes in without traction. Yields, for each of the motions (ξ, η, φ), the smooth contact in steady rolling
-    and those over the sample that count in transient rolling, in steps of the same length, on whole cells.
+    and those over the sample that count in transient rolling, in steps of the same length: of a cell where
+    it is covered, else longer ones.
 
     Raises
     ------
     InputError
         If the sample has no room for it.
     """
-    rolling, smooth = _on_whole_cells(rolling, smooth)
     space = rolling.half_space
     body = smooth.undeformed_gap
     length = contact_rows(smooth)
     rows = len(body)
     spare = len(heights) - len(body)
-    stride = math.ceil(length / STEPS)
+    stride = 1 if space.cells == "covered" else math.ceil(length / STEPS)
     allowed = f"at least {rows + LEAST_LENGTHS * length} rows, the window and {LEAST_LENGTHS} contacts"
     remedy = "Lengthen it, in a case by contact.sample_length."
     require(has_room(smooth, heights), "sample to roll over", count_of(len(heights), "row"), allowed, remedy)
@@ -196,16 +197,6 @@ def rolled_over(
             state = roll(contact, (xi, eta), spin, before=state, start=start)
             found.append(state)
         yield steady, found[UNCOUNTED * length // stride :]
-
-
-def _on_whole_cells(rolling: FrictionalHalfSpace, smooth: Contact) -> tuple[FrictionalHalfSpace, Contact]:
-    """The same on whole cells, whose steps may be long, and on which all rough contacts settle."""
-    space = rolling.half_space
-    if space.cells == "whole":
-        return rolling, smooth
-    whole_space = HalfSpace(space.shape, space.spacing, space.modulus, space.hardness)
-    whole_rolling = FrictionalHalfSpace(whole_space, rolling.bodies, rolling.friction, rolling.coupled)
-    return whole_rolling, whole_space.solve(smooth.undeformed_gap, load=smooth.force)
 
 
 def over_smooth(steady: SlidingContact, found: list[SlidingContact], axis: int) -> tuple[float, float]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from asperity import arguments
 from asperity.arguments import Array, ArrayLike, Complex, NDArray, real, require
-from asperity.contact.friction import Friction, SlidingContact, cell_places, doubts
+from asperity.contact.friction import Friction, SlidingContact, box_around, cell_places, doubts
 from asperity.contact.friction_work import with_work
 from asperity.contact.halfspace import HalfSpace
 from asperity.contact.periodic import refuse_period
@@ -113,7 +113,7 @@ class FrictionalHalfSpace:
 
     On whole cells the error of steady rolling is of first order in their length. On covered ones it is of
     second order (`asperity.kernels.traction_rims`): with six cells in the semi-axis of a smooth contact 0.2 %
-    of the friction, for 3 %. Rough contacts may not settle there, which a warning tells.
+    of the friction, for 3 %.
 
     Examples
     --------
@@ -541,9 +541,7 @@ class FrictionalHalfSpace:
         if self._couples:
             rigid -= _convolved(spread, normal.pressure)
         contact = normal.pressure > 0.0
-        box_of = contact if contact.any() else np.ones_like(contact)
-        rows, columns = (np.flatnonzero(box_of.any(axis=axis)) for axis in (1, 0))
-        inside = slice(*rows[[0, -1]] + [0, 1]), slice(*columns[[0, -1]] + [0, 1])
+        inside = box_around(contact)
         nx, ny = bound[inside].shape
         box = kernel.traction_box(nx, ny, self._convolution(nx, ny, ahead, steady))
         carried, directions = (CARRIED, DIRECTIONS) if steady else (0.0, 2)

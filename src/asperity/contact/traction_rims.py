@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from asperity.arguments import Array, Complex, Flags, require
-from asperity.contact.friction import SlidingContact, cell_places
+from asperity.contact.friction import SlidingContact, box_around, cell_places
 from asperity.contact.friction_work import Displacement
 from asperity.contact.solved import Contact
 from asperity.kernels.traction_rims import find_left, set_bound, traction_rims
@@ -176,14 +176,17 @@ def _left_in(
     bound: Array, traction: Complex, enters: Flags, sides: tuple[float, float], poisson: float
 ) -> tuple[Complex, Array, Complex]:
     """What rims leave in cells (nx, ny), what those of the bound leave, m, and the normals of those."""
-    nx, ny = bound.shape
-    idle = ((0, 0), (0, 1))  # a cell between the rows
-    flat_bound, flat_traction, entering = (np.pad(each, idle).ravel() for each in (bound, traction, enters))
-    rims = traction_rims(sides, poisson, ny + 1, 0, entering, np.zeros(len(entering)))
-    rims.room[:] = flat_bound
+    inside = box_around(bound > 0.0)
+    nx, ny = bound[inside].shape
+    pitch = ny + 1  # a cell between the rows
+    rims = traction_rims(sides, poisson, pitch, 0, np.zeros(nx * pitch, bool), np.zeros(nx * pitch))
+    tractions = np.zeros(nx * pitch, complex)
+    for flat, field in ((rims.enters, enters), (rims.room, bound), (tractions, traction)):
+        flat.reshape(nx, pitch)[:, :ny] = field[inside]
     set_bound(rims)
-    find_left(rims, flat_traction)
-    left, outer, normal = (
-        each.reshape(nx, ny + 1)[:, :ny].copy() for each in (rims.left, rims.bound_left, rims.bound_normal)
-    )
+    find_left(rims, tractions)
+    left, normal = np.zeros((2, *bound.shape), complex)
+    outer = np.zeros(bound.shape)
+    for field, flat in ((left, rims.left), (outer, rims.bound_left), (normal, rims.bound_normal)):
+        field[inside] = flat.reshape(nx, pitch)[:, :ny]
     return left, outer, normal

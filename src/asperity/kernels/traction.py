@@ -19,9 +19,11 @@ from asperity.kernels.traction_rims import (
     add_giving,
     add_left,
     carried_on,
+    forget_secants,
     giving_aside,
     set_bound,
     set_giving,
+    set_secants,
     weigh_giving,
 )
 
@@ -154,7 +156,7 @@ EDGE = 1.0 - 1e-12
 """Share of the bound from which on a traction counts as on the edge."""
 RETREAT, LEAST, ROUNDING = 4.0, 1e-2, 1e-12
 """Factor of the damping where a step would raise the energy, by more than this share, and the least then."""
-PATIENCE, GROWTH, MOST = 12, 1.5, 3.0
+PATIENCE, GROWTH, MOST = 16, 1.5, 10.0
 """Iterations that should halve what is left; growth of the damping with each one more, and its end."""
 
 
@@ -290,13 +292,15 @@ def _slips_on(b: TractionBox, rims: TractionRims, q: int) -> bool:
 
 @compiled(**INNER)
 def _slip_at_end(b: TractionBox, rims: TractionRims | None, q: int) -> complex:
-    """Slip of a cell that slips at the end of a step: of what goes on, the mean and half of its growth."""
+    """Slip of a cell at the end of a step: of what goes on, the mean and half of its growth.
+
+    By half of itself at most, as what begins grows: what falls faster ends within the step.
+    """
     slip = b.slip[q]
     if rims is None or not _slips_on(b, rims, q):
         return slip
     earlier = b.slip[q + rims.ahead] if rims.ahead > 0 else rims.earlier[q]
-    at_end = slip + 0.5 * (slip - earlier)
-    return at_end if (at_end * b.traction[q].conjugate()).real < 0.0 else slip
+    return slip + _within(0.5 * (slip - earlier), 0.5 * np.sqrt(_square(slip)))
 
 
 @compiled(**CALLED, **REASSOCIATE)
@@ -317,9 +321,9 @@ def _judge(b: TractionBox, linear: LinearProblem, rims: TractionRims | None) -> 
             square = _square(p)
             linear.kept[q] = 1.0
             n = p * (1.0 / np.sqrt(square)) if square > (EDGE * g) ** 2 else n
+            s = _slip_at_end(b, rims, q)
             if (s * n.conjugate()).real < 0.0:
                 linear.kept[q] = 0.5
-                s = _slip_at_end(b, rims, q)
                 s -= (s * n.conjugate()).real * n
             else:
                 n = 0.0j
@@ -545,7 +549,8 @@ def solve_traction(
         if norm < 0.5 * least:
             least = norm
             waited = 0
-        if rims is not None:  # without an energy nothing else ends a circle of solutions
+            forget_secants(rims)
+        if rims is not None:  # without an energy, for what secants alone do not bring to an end
             damping = max(damping, min(LEAST * GROWTH ** (waited - PATIENCE), MOST))
         last = norm
         _linearise(b, linear, rims, damping, norm, task.diagonal)
@@ -558,6 +563,7 @@ def solve_traction(
             _shorten(b)
             reached = _product(b.trial, b.response) + _product(b.trial, b.rigid)
         energy = reached
+        set_secants(rims, b.traction, b.trial, task.diagonal)
         _adopt(b)
         worst, norm = _judge(b, linear, rims)
     return iteration, convolutions, worst / largest if largest > 0.0 else worst

@@ -37,6 +37,8 @@ Those leave in proportion to themselves and to tractions beside them, in whateve
 """
 LEAST_ROOT = 1e-6
 """Of √m and what it becomes, over √g, at least, by which a quotient of differences is divided."""
+MEMORY, LARGEST_SECANT = 0.4, 1e9
+"""Share of a secant that outlasts a step; and the largest, over the displacement of a cell by itself."""
 
 
 class TractionRims(NamedTuple):
@@ -69,6 +71,9 @@ class TractionRims(NamedTuple):
     steep: NDArray
     entry: NDArray
     toward: NDArray  # (size,), direction of the traction
+    added: NDArray  # (size,), what rims add to the slip, m
+    growth: NDArray  # (size,), by how much that grew in the last step, m
+    secant: NDArray  # (size,), how much more cells gave way in it than they were to, over their displacement
 
 
 def traction_rims(
@@ -78,11 +83,13 @@ def traction_rims(
     size = len(enters)
     missing = np.zeros(size + 2 * pitch)
     room, bound_left, fall, *slopes = np.zeros((6, size))
-    bound_normal, left, earlier, origin, change = np.zeros((5, size), complex)
+    bound_normal, left, earlier, origin, change, added, growth = np.zeros((7, size), complex)
     giving = np.zeros((3, size), np.float32)
     known = (*sides, poisson, pitch, ahead, enters, beyond, np.zeros(size), earlier, origin, change)
     of_bound = (room, missing, bound_left, bound_normal, np.array(slopes))
-    return TractionRims._make((*known, *of_bound, left, fall, *giving, np.zeros(size, np.complex64)))
+    toward = np.zeros(size, np.complex64)
+    of_steps = (added, growth, np.zeros(size))
+    return TractionRims._make((*known, *of_bound, left, fall, *giving, toward, *of_steps))
 
 
 @compiled(**INNER)
@@ -227,11 +234,14 @@ def add_left(rims: TractionRims | None, traction: NDArray, slip: NDArray) -> Non
     if rims is not None:
         find_left(rims, traction)
         for q in range(len(traction)):
-            slip[q] += rims.left[q] + rims.behind[q] * traction[q]
+            added = rims.left[q] + rims.behind[q] * traction[q]
             if rims.enters[q]:
-                slip[q] += rims.beyond[q] * _turned(rims, traction[q], rims.bound_normal[q])
+                added += rims.beyond[q] * _turned(rims, traction[q], rims.bound_normal[q])
             if rims.ahead > 0 and q + rims.ahead < len(traction):
-                slip[q] -= _left_ahead(rims, rims.room, traction, q + rims.ahead)
+                added -= _left_ahead(rims, rims.room, traction, q + rims.ahead)
+            rims.growth[q] = added - rims.added[q]
+            rims.added[q] = added
+            slip[q] += added
 
 
 @compiled(**INNER)
@@ -288,19 +298,55 @@ def set_giving(rims: TractionRims | None, slip: NDArray, normal: NDArray, diagon
 
 
 @compiled(**INNER)
-def giving_aside(rims: TractionRims | None, q: int, diagonal: float) -> float:
-    """How much more a cell gives way to a change of its traction, if that turns it, over its diagonal."""
-    if rims is None:
-        return 0.0
+def _giving_aside(rims: TractionRims, q: int, diagonal: float) -> float:
+    """How much more a cell gives way to a change that turns its traction, without its secant."""
     entering = q + rims.ahead if rims.ahead > 0 and q + rims.ahead < len(rims.entry) else q
     entry = rims.entry[entering] if entering > q else np.float32(0.0)
     return (rims.beyond[q] + rims.behind[q]) / diagonal + rims.turning[q] + entry
 
 
 @compiled(**INNER)
+def giving_aside(rims: TractionRims | None, q: int, diagonal: float) -> float:
+    """How much more a cell gives way to a change of its traction, if that turns it, over its diagonal."""
+    return 0.0 if rims is None else _giving_aside(rims, q, diagonal) + rims.secant[q]
+
+
+@compiled(**INNER)
 def _along(rims: TractionRims, q: int, value: complex) -> complex:
     """Part of a change that lies along the traction."""
     return (value * rims.toward[q].conjugate()).real * rims.toward[q]
+
+
+@compiled(**CALLED)
+def set_secants(rims: TractionRims | None, before: NDArray, traction: NDArray, diagonal: float) -> None:
+    """Find by a step how much more cells gave way than `set_giving` tells of each by itself.
+
+    What a cell leaves also follows the tractions beside it, and bends. Where a step overshoots by that the
+    next one is shorter, cell by cell: else few cells would go to and fro, and all wait for them. A step that
+    turns the traction more than it changes its size is held to what gives way aside.
+    """
+    if rims is not None:
+        for q in range(len(traction)):
+            rims.secant[q] *= MEMORY
+            step = traction[q] - before[q]
+            square = (step * step.conjugate()).real
+            if square > 0.0:
+                along = _along(rims, q, step)
+                more = rims.growth[q] / diagonal - _giving_aside(rims, q, diagonal) * step
+                if 2.0 * (along * along.conjugate()).real > square:
+                    more -= rims.steep[q] * along
+                else:
+                    step -= along
+                    square = (step * step.conjugate()).real
+                secant = (more * step.conjugate()).real / square
+                rims.secant[q] = min(max(secant, rims.secant[q]), LARGEST_SECANT)
+
+
+@compiled(**CALLED)
+def forget_secants(rims: TractionRims | None) -> None:
+    """Trust in `set_giving` alone, as long as steps halve what is left."""
+    if rims is not None:
+        rims.secant[:] = 0.0
 
 
 @compiled(**INNER)

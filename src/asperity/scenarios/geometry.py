@@ -78,10 +78,6 @@ class Geometry:
         nx, ny = self.body.shape
         return HalfSpace((nx, ny), self.spacing, self.modulus, hardness, self.cells)
 
-    def whole_half_space(self, hardness: float | None) -> HalfSpace:
-        """Make one whose cells stick or slip, and so are in contact as a whole or not at all."""
-        return replace(self, cells="whole").half_space(hardness)
-
     def remedy_for_cut_off(self, highest: float, datum: float) -> str:
         """Name a window that holds the contacts of all states, also of those that this one keeps out.
 

@@ -9,7 +9,6 @@ import numpy as np
 from asperity.arguments import Array, Complex
 from asperity.case.scene import Case
 from asperity.contact import creep
-from asperity.contact.elastic_grid import MOST_ELONGATED
 from asperity.contact.friction import Friction, SlidingContact, cell_places
 from asperity.contact.solved import Contact
 from asperity.contact.tangential import FrictionalHalfSpace
@@ -17,6 +16,7 @@ from asperity.errors import Finding, Grade, InputError, OutOfRangeWarning, perce
 from asperity.progress import Progress
 from asperity.reduction import stiffness, texture
 from asperity.reduction.traction import TractionStates, middle_of, traction_states
+from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.reducing import LIGHTEST_STATE
 from asperity.scenarios.scene import PreparedCase
 from asperity.scenes import compute, schema
@@ -41,9 +41,12 @@ from asperity.structures.squeal import (
     ringing_modes,
     standing_modes,
 )
+from asperity.surfaces.cell_means import pressed_heights
 
 LEAST_CELLS = 4.0
 """Cells in the shorter semi-axis of the smooth contact in the lowest state."""
+MOST_ELONGATED = 2.0
+"""Longer side over the shorter of covered cells on which all contacts settle, whatever Poisson's ratio."""
 
 GYRATING = 0.3
 """Share of what friction holds from which on it is told that balls gyrate."""
@@ -59,29 +62,40 @@ def friction_of(case: Case) -> Friction:
     return case.creep.law(case.contact.friction)
 
 
-def smooth_with_friction(of: PreparedCase, friction: Friction) -> tuple[FrictionalHalfSpace, Contact]:
-    """What rolls, as the first body, on what it rolls over; and their smooth contact under the load.
+def shape_with_friction(of: PreparedCase) -> Geometry:
+    """Geometry of a case on the cells that friction is solved on.
 
-    On covered cells, whose error is of second order, unless whole ones are asked for, surfaces flow, or cells
-    are too long for them.
+    Covered ones, whose error is of second order, unless whole ones are asked for, surfaces flow, or cells are
+    too long for them.
     """
-    case = of.case
     shape = of.shape
-    elongation = max(shape.spacing) / min(shape.spacing)
-    covers = case.contact.rim_cells != "whole" and case.contact.hardness is None
-    if shape.cells == "whole" and covers and elongation <= MOST_ELONGATED:
-        shape = shape.over_cells()
-    space = shape.half_space(None) if covers else shape.whole_half_space(case.contact.hardness)
+    contact = of.case.contact
+    too_long = max(shape.spacing) > MOST_ELONGATED * min(shape.spacing)
+    if contact.rim_cells == "whole" or contact.hardness is not None or too_long:
+        return replace(shape, cells="whole")
+    return shape if shape.cells == "covered" else shape.over_cells()
+
+
+def smooth_with_friction(of: PreparedCase, friction: Friction) -> tuple[FrictionalHalfSpace, Contact]:
+    """What rolls, as the first body, on what it rolls over; and their smooth contact under the load."""
+    case = of.case
+    shape = shape_with_friction(of)
+    space = shape.half_space(case.contact.hardness)
     bodies = case.rolling.material, case.rolled_over.material
     smooth = space.solve(shape.body, load=shape.load, rtol=case.numerics.rtol)
     return FrictionalHalfSpace(space, bodies, friction), smooth
 
 
 def rough_strips(of: PreparedCase) -> list[Array]:
-    """Rough strips (rows, ny) of a case about the plane that the patch feels in their middle, m."""
+    """Rough strips (rows, ny) of a case about the plane that the patch feels in their middle, m.
+
+    As the cells press them that friction is solved on.
+    """
     weights = texture.punch_weights(of.shape.spacing, of.shape.class_axes)
     nx = len(of.shape.body)
     rough = [strip.heights for strip in of.textures.strips if strip.heights.any()]
+    if of.shape.cells == "whole" and shape_with_friction(of).cells == "covered":
+        rough = [pressed_heights(heights) for heights in rough]
     return [heights - stiffness.weighted_mean(middle_of(heights, nx), weights) for heights in rough]
 
 
@@ -92,12 +106,12 @@ def states_of(prepared: PreparedCase, count: int, progress: Progress | None) -> 
     the largest that the window holds.
     """
     case = prepared.case
-    shape = prepared.shape
+    shape = shape_with_friction(prepared)
     samples = rough_strips(prepared)
     if not samples:
         remedy = "Give it a file or rms, of a rail a spectrum."
         raise InputError("surface", "none, or as a line alone", "a rough surface with samples", remedy)
-    space = shape.whole_half_space(case.contact.hardness)
+    space = shape.half_space(case.contact.hardness)
     resolved = (LEAST_CELLS * max(shape.spacing) / min(shape.axes(1.0))) ** 3
     loads = max(LIGHTEST_STATE * shape.class_load, resolved), shape.largest_force
     gaps = [shape.body - middle_of(sample, len(shape.body)) for sample in samples]
