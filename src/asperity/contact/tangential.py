@@ -113,7 +113,7 @@ class FrictionalHalfSpace:
 
     On whole cells the error of steady rolling is of first order in their length. On covered ones it is of
     second order (`asperity.kernels.traction_rims`): with six cells in the semi-axis of a smooth contact 0.2 %
-    of the friction, for 3 %.
+    of the friction, for 3 %. A rough contact in some thousand does not settle there, which a warning tells.
 
     Examples
     --------

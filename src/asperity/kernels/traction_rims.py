@@ -299,7 +299,7 @@ def set_giving(rims: TractionRims | None, slip: NDArray, normal: NDArray, diagon
 
 @compiled(**INNER)
 def _giving_aside(rims: TractionRims, q: int, diagonal: float) -> float:
-    """How much more a cell gives way to a change that turns its traction, without its secant."""
+    """The same, but for what the last step told."""
     entering = q + rims.ahead if rims.ahead > 0 and q + rims.ahead < len(rims.entry) else q
     entry = rims.entry[entering] if entering > q else np.float32(0.0)
     return (rims.beyond[q] + rims.behind[q]) / diagonal + rims.turning[q] + entry
@@ -307,7 +307,7 @@ def _giving_aside(rims: TractionRims, q: int, diagonal: float) -> float:
 
 @compiled(**INNER)
 def giving_aside(rims: TractionRims | None, q: int, diagonal: float) -> float:
-    """How much more a cell gives way to a change of its traction, if that turns it, over its diagonal."""
+    """How much more a cell gives way to a change that turns its traction, over its diagonal."""
     return 0.0 if rims is None else _giving_aside(rims, q, diagonal) + rims.secant[q]
 
 
