@@ -8,8 +8,8 @@ from scipy.ndimage import gaussian_filter
 
 from asperity import Friction, FrictionalHalfSpace, HalfSpace, Hertz, Material
 from asperity.contact.creep import over_smooth, rolled_over
-from asperity.contact.friction import cell_places
-from asperity.contact.traction_rims import turn_at, with_patches
+from asperity.contact.friction import box_around, cell_places
+from asperity.contact.traction_rims import left_by, turn_at, with_patches
 from asperity.kernels.traction_influence import (
     means_of_pressure,
     means_of_traction,
@@ -175,6 +175,28 @@ def test_a_transient_ends_in_steady_rolling_and_keeps_its_energy():
     assert steady.work > 0.0
 
 
+def test_where_a_contact_begins_rims_leave_what_the_whole_traction_takes_of_the_bound():
+    """−L(g) q/g in a cell that its material enters, of any traction; elsewhere nothing else."""
+    x = np.arange(21.0) - 10.2
+    bound = np.sqrt(np.maximum(64.0 - np.add.outer(x**2, x**2), 0.0))
+    traction = np.where(bound > 0.0, 0.3 + 0.2j, 0.0)
+    standing, rolling = (left_by(bound, traction, (1.0, 1.0), 0.0, rolls=rolls) for rolls in (False, True))
+    full = left_by(bound, bound + 0j, (1.0, 1.0), 0.0)  # all that the bound leaves, as nothing is missing
+    enters = (bound > 0.0) & (np.roll(bound, -1, axis=0) == 0.0)
+    share = full[enters] / bound[enters]
+    np.testing.assert_allclose(rolling[enters], share * traction[enters], atol=1e-9)
+    assert np.abs(rolling - standing)[enters].max() > 0.01 * np.abs(full).max()
+    np.testing.assert_array_equal(rolling[~enters], standing[~enters])
+
+
+def test_without_contact_there_is_no_friction():
+    normal, solver, *_ = elliptic(5)
+    apart = solver.half_space.solve(normal.undeformed_gap, approach=-1e-6)
+    assert box_around(apart.pressure > 0.0) == (slice(None), slice(None))
+    for found in (solver.shift(apart, (1e-6, 0.0)), solver.roll(apart, (1e-3, 0.0))):
+        assert (found.force, found.limit, found.stick_area) == ((0.0, 0.0), 0.0, 0.0)
+
+
 PARTS = 4
 """Parts of a side of a cell into which the finest grid is divided."""
 
@@ -287,14 +309,15 @@ def drawn(seed, rms, way):
     [
         ("transient", 0.05, (3, 13, 29, 31, 50)), ("shift", 0.05, (13, 52)), ("transient", 0.0, range(12)),
         ("steady", 0.05, (3, 4, 5, 24, 28, 29, 33, 34, 35, 42)), ("shift", 0.05, (65, 84, 116, 122)),
-        ("transient", 0.05, (4, 36, 40, 84, 119, 133)),
+        ("transient", 0.05, (4, 36, 40, 84, 119, 133)), ("steady", 0.05, (84, 115, 206)),
+        ("transient", 0.1, (40, 77, 114, 184)),
     ],
 )  # fmt: skip
 def test_contacts_settle_that_go_round_in_circles_by_less(way, rms, seeds):
     """All but one, as digits may differ from processor to processor.
 
-    Without secants none of the latter three lines do, and without a slip that ends continuously few of the
-    last.
+    Without secants few of the latter do; without a slip that ends continuously, transients do not; if secants
+    are forgotten at each step the last but one, and if they do not tell turns from growth the last.
     """
     settled = [drawn(seed, rms, way).converged for seed in seeds]
     assert sum(settled) >= len(settled) - 1

@@ -18,13 +18,22 @@ from asperity.reference.materials import MATERIALS
 from asperity.scenarios.preparing import prepare
 from asperity.scenes import schema
 from asperity.scenes.compute import compute
-from asperity.scenes.creep import _wear, creep_group, friction_of, rough_strips, smooth_with_friction
+from asperity.scenes.creep import (
+    _wear,
+    creep_group,
+    friction_of,
+    rough_strips,
+    shape_with_friction,
+    smooth_with_friction,
+    states_of,
+)
 from asperity.scenes.figures.sideways import CREEP, creep_answers, friction_table
 from asperity.scenes.result import computed_result
 from asperity.schema import tree
 from asperity.structures.lateral_rail import LateralTrack, wheel_receptances
 from asperity.structures.squeal import ringing_modes, standing_modes
 from asperity.studies.member import kept
+from asperity.surfaces.cell_means import pressed_heights
 from small_cases import BALL, BODIES, HEARD
 
 ATTACK, SPEED = 0.012, 20.0
@@ -94,6 +103,28 @@ def test_smooth_bodies_creep_on_covered_cells(contact, cells):
     curve = creep_curve(rolling, smooth, prepared.shape.semi_axes, count=12)
     assert curve.slopes[0] < 1.0 if cells == "covered" else curve.slopes[0] > 1.01
     assert curve.force[0, -1] == pytest.approx(curve.limit, rel=1e-3)
+
+
+def test_covered_cells_with_friction_are_not_long():
+    prepared = prepare(WheelOnRail(**KEYS))
+    h = prepared.shape.spacing[0]
+    for sides, cells in (((h, 0.4 * h), "whole"), ((0.4 * h, h), "whole"), ((h, 0.6 * h), "covered")):
+        one = SimpleNamespace(case=prepared.case, shape=replace(prepared.shape, spacing=sides))
+        assert shape_with_friction(one).cells == cells
+
+
+def test_samples_and_states_are_those_of_the_cells_of_friction(monkeypatch):
+    """A case whose law sees no heights has whole cells otherwise, and textures at points."""
+    monkeypatch.setattr("asperity.scenes.creep.traction_states", lambda *of: of)
+    for rim_cells in ("auto", "whole"):
+        prepared = prepare(WheelOnRail(**KEYS | {"contact": KEYS["contact"] | {"rim_cells": rim_cells}}))
+        assert prepared.shape.cells == "whole"
+        space, _, body, samples, *_ = states_of(prepared, 2, None)
+        assert space.cells == ("whole" if rim_cells == "whole" else "covered")
+        np.testing.assert_array_equal(body, shape_with_friction(prepared).body)
+        heights = prepared.textures.strips[0].heights
+        pressed = heights if rim_cells == "whole" else pressed_heights(heights)
+        np.testing.assert_allclose(np.diff(samples[0], axis=0), np.diff(pressed, axis=0), atol=1e-18)
 
 
 def test_friction_follows_the_contact_force_by_its_coefficient_in_full_slip(computed, creeping):
