@@ -316,8 +316,8 @@ def drawn(seed, rms, way):
 def test_contacts_settle_that_go_round_in_circles_by_less(way, rms, seeds):
     """All but one, as digits may differ from processor to processor.
 
-    Without secants few of the latter do; without a slip that ends continuously, transients do not; if secants
-    are forgotten at each step the last but one, and if they do not tell turns from growth the last.
+    Without secants few of the latter do; without a slip that ends continuously, transients do not; and if
+    secants do not tell turns from growth, the last do not.
     """
     settled = [drawn(seed, rms, way).converged for seed in seeds]
     assert sum(settled) >= len(settled) - 1
