@@ -53,8 +53,9 @@ def computed(cache_of_module):
 def creeping(computed):
     """What is laid out of one run with other keys of [creep]."""
 
-    def group(creep, modes=computed.scene.modes, **sideways):
-        case = WheelOnRail(**KEYS | {"creep": creep, "sideways": sideways})
+    def group(creep, modes=computed.scene.modes, rim_cells="auto", **sideways):
+        contact = KEYS["contact"] | {"rim_cells": rim_cells}
+        case = WheelOnRail(**KEYS | {"creep": creep, "sideways": sideways, "contact": contact})
         return creep_group(replace(computed, case=case, scene=replace(computed.scene, modes=modes)))
 
     return group
@@ -145,11 +146,12 @@ def test_friction_follows_the_contact_force_by_its_coefficient_in_full_slip(comp
     assert little[schema.FULL_SLIP_SHARE] == np.mean(force <= little[schema.FULL_SLIP_LOAD])
 
 
-def test_steps_over_a_sample_are_long_and_what_they_miss_is_added(computed, creeping, monkeypatch):
-    """A sample without roughness slips, sticks and pulls as smooth bodies in steps of a cell do."""
+@pytest.mark.parametrize("rim_cells", ["covered", "whole"])
+def test_what_steps_over_a_sample_miss_is_added(computed, creeping, monkeypatch, rim_cells):
+    """A sample without roughness slips, sticks and pulls as smooth bodies do; whole cells have long steps."""
     smooth = np.zeros_like(rough_strips(computed)[0])
     monkeypatch.setattr("asperity.scenes.creep.rough_strips", lambda of: [smooth])
-    found = creeping({"lateral": 0.002, "spin": 0.3})
+    found = creeping({"lateral": 0.002, "spin": 0.3}, rim_cells=rim_cells)
     for entry in (schema.STICK_AREA, schema.SLIP_AREA, schema.SPIN_MOMENT, schema.SAMPLE_HEAT):
         both = np.array(found[entry])
         assert both[1] == pytest.approx(both[0], rel=2e-3)

@@ -34,6 +34,15 @@ With eight a contact takes hundreds, and some none that suffices (``benchmarks/c
 """
 
 
+def box_around(cells: Flags) -> tuple[slice, slice]:
+    """Rows and columns of the smallest box around cells (nx, ny); all of them where there are none."""
+    nx, ny = cells.shape
+    rows, columns = (np.flatnonzero(cells.any(axis=axis)).tolist() for axis in (1, 0))
+    if not rows:
+        return slice(0, nx), slice(0, ny)
+    return slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
+
+
 class ElasticGrid:
     """Elastic half-space on a grid of rectangular cells, as `HalfSpace` describes it."""
 
@@ -141,14 +150,12 @@ class ElasticGrid:
             return math.inf
         if self.cells == "covered":
             return self._stiffness_with_rims(p, free, rtol)
-        rows, columns = (np.flatnonzero(free.any(axis=axis)) for axis in (1, 0))
-        inside = free[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+        inside = box_around(free)
         taps = tuple(self.influence.taps.tolist())
-        soft = None
-        if edges is not None:
-            giving = self.softness(edges).compliance(p)
-            soft = giving[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
-        rise, converged = unit_indentation(self.influence.table, taps, inside, rtol, MAX_ITERATIONS, soft)
+        soft = None if edges is None else self.softness(edges).compliance(p)[inside]
+        rise, converged = unit_indentation(
+            self.influence.table, taps, free[inside], rtol, MAX_ITERATIONS, soft
+        )
         if not converged:
             warn_unconverged("tangent stiffness", Outcome.ITERATION_LIMIT)
         stiffness = float(rise.sum()) * self.cell_area

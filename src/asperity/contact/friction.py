@@ -219,14 +219,6 @@ def cell_places(space: ElasticGrid) -> tuple[Array, Array]:
     return x[:, None], y[None, :]
 
 
-def box_around(cells: Flags) -> tuple[slice, slice]:
-    """Rows and columns of the smallest box around cells (nx, ny); of all where there are none."""
-    rows, columns = (np.flatnonzero(cells.any(axis=axis)) for axis in (1, 0))
-    if not len(rows):
-        return slice(None), slice(None)
-    return slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
-
-
 def doubts(found: SlidingContact, largest: float) -> list[str]:
     """What makes a solution doubtful, in words: a creepage beyond the largest that is small, a pivot."""
     words = []

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from asperity.arguments import Array, ArrayLike, finite_array, real, real_array, require, shown, whole
 from asperity.contact.batched import Device, find_device, solve_batched
 from asperity.contact.edges import KEPT
-from asperity.contact.elastic_grid import check_edges
+from asperity.contact.elastic_grid import box_around, check_edges
 from asperity.contact.pressed import block_of, solve_block
 from asperity.errors import Grade, TruncatedContactWarning, UnconvergedWarning, percent
 from asperity.kernels.scanning import TRUNCATED
@@ -304,13 +304,13 @@ class ScanJob:
         With cells around them, from which pressure moves in with the surface, or where the window ends.
         """
         overlaps = self.body - highest < self.approaches[-1]
-        along, across = (np.flatnonzero(overlaps.any(axis=axis)) for axis in (1, 0))
-        if not len(along):
+        if not overlaps.any():
             return slice(0, 1), slice(0, 1)
+        along, across = box_around(overlaps)
         nx, ny = self.body.shape
         return (
-            slice(max(int(along[0]) - BESIDE, 0), min(int(along[-1]) + 1 + BESIDE + self.stride, nx)),
-            slice(max(int(across[0]) - BESIDE, 0), min(int(across[-1]) + 1 + BESIDE, ny)),
+            slice(max(along.start - BESIDE, 0), min(along.stop + BESIDE + self.stride, nx)),
+            slice(max(across.start - BESIDE, 0), min(across.stop + BESIDE, ny)),
         )
 
     @property

@@ -9,7 +9,8 @@ import numpy as np
 
 from asperity import arguments
 from asperity.arguments import Array, ArrayLike, Complex, NDArray, real, require
-from asperity.contact.friction import Friction, SlidingContact, box_around, cell_places, doubts
+from asperity.contact.elastic_grid import box_around
+from asperity.contact.friction import Friction, SlidingContact, cell_places, doubts
 from asperity.contact.friction_work import with_work
 from asperity.contact.halfspace import HalfSpace
 from asperity.contact.periodic import refuse_period
@@ -113,7 +114,7 @@ class FrictionalHalfSpace:
 
     On whole cells the error of steady rolling is of first order in their length. On covered ones it is of
     second order (`asperity.kernels.traction_rims`): with six cells in the semi-axis of a smooth contact 0.2 %
-    of the friction, for 3 %. A rough contact in some thousand does not settle there, which a warning tells.
+    of the friction, for 3 %. Few rough contacts do not settle there, which a warning tells.
 
     Examples
     --------

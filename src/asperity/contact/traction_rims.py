@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from asperity.arguments import Array, Complex, Flags, require
-from asperity.contact.friction import SlidingContact, box_around, cell_places
+from asperity.contact.elastic_grid import box_around
+from asperity.contact.friction import SlidingContact, cell_places
 from asperity.contact.friction_work import Displacement
 from asperity.contact.solved import Contact
 from asperity.kernels.traction_rims import find_left, set_bound, traction_rims

@@ -321,9 +321,9 @@ def _judge(b: TractionBox, linear: LinearProblem, rims: TractionRims | None) -> 
             square = _square(p)
             linear.kept[q] = 1.0
             n = p * (1.0 / np.sqrt(square)) if square > (EDGE * g) ** 2 else n
-            s = _slip_at_end(b, rims, q)
             if (s * n.conjugate()).real < 0.0:
                 linear.kept[q] = 0.5
+                s = _slip_at_end(b, rims, q)
                 s -= (s * n.conjugate()).real * n
             else:
                 n = 0.0j
